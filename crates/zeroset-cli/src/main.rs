@@ -1,0 +1,3 @@
+//! The `zeroset` command.
+
+fn main() {}

@@ -1,0 +1,1 @@
+//! Point cloud and mesh formats for `zeroset`.

@@ -1,0 +1,67 @@
+//! Point clouds: positions with what was measured beside them.
+
+mod offset;
+
+pub use offset::choose_offset;
+
+/// Values measured at each point, or carried by each vertex of a mesh. Each present list has one entry per point.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Attributes {
+    /// Red, green, blue, 0..=255.
+    pub colors: Option<Vec<[u8; 3]>>,
+    /// Strength of the return, in the scanner's own unit.
+    pub intensities: Option<Vec<f32>>,
+    /// ASPRS classification codes: 2 ground, 6 building, 7 low noise, 18 high noise, and so on.
+    pub classes: Option<Vec<u8>>,
+}
+
+/// A raw cloud: points without normals.
+///
+/// Coordinates are f64 and local: the world position of point `i` is `points[i] + world_from_local`. The offset keeps
+/// georeferenced coordinates (10^6 m) exact wherever differences of them are taken.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Cloud {
+    /// What to add to a local position to get the world position, in the file's unit.
+    pub world_from_local: [f64; 3],
+    /// Local positions.
+    pub points: Vec<[f64; 3]>,
+    /// What was measured beside the positions.
+    pub attributes: Attributes,
+    /// The coordinate reference system as the file states it: WKT, or `EPSG:n`.
+    pub crs: Option<String>,
+}
+
+impl Cloud {
+    /// A cloud from world positions; the offset is chosen by [`choose_offset`].
+    #[must_use]
+    pub fn from_world(mut points: Vec<[f64; 3]>) -> Self {
+        let offset = choose_offset(points.iter().copied());
+        if offset != [0.0; 3] {
+            for point in &mut points {
+                for axis in 0..3 {
+                    point[axis] -= offset[axis];
+                }
+            }
+        }
+        Self { world_from_local: offset, points, ..Self::default() }
+    }
+
+    /// Number of points.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.points.len()
+    }
+
+    /// Whether the cloud holds no point.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.points.is_empty()
+    }
+
+    /// World position of point `i`.
+    #[must_use]
+    pub fn world(&self, i: usize) -> [f64; 3] {
+        let (p, o) = (self.points[i], self.world_from_local);
+        [p[0] + o[0], p[1] + o[1], p[2] + o[2]]
+    }
+}

@@ -1,0 +1,14 @@
+//! Implicit models from raw point clouds.
+//!
+//! `zeroset` finds a function F of space whose zero set is the surface that a cloud of points was measured on. It needs
+//! no normals and no orientation. F is negative inside and positive outside.
+//!
+//! The rooms follow the data: [`cloud`] -> [`domain`] -> [`fit`] -> [`field`] -> [`contour`] -> [`mesh`]. The remaining
+//! rooms serve all of these: [`spatial`] answers nearest-neighbour questions, [`sample`] makes scenes with a known truth, and
+//! [`monitor`] carries progress out and a wish to stop in.
+
+pub mod cloud;
+pub mod mesh;
+pub mod monitor;
+pub mod sample;
+pub mod spatial;

@@ -1,0 +1,1 @@
+//! Seeded scenes with a known truth.
