@@ -8,6 +8,10 @@
 //! [`monitor`] carries progress out and a wish to stop in.
 
 pub mod cloud;
+pub mod contour;
+pub mod domain;
+pub mod field;
+pub mod fit;
 pub mod mesh;
 pub mod monitor;
 pub mod sample;

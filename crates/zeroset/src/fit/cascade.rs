@@ -1,0 +1,322 @@
+//! The cascade: from the seed on the coarsest lattice to the finest.
+
+use serde::Serialize;
+
+use super::gradient::{gradient_lengths, linearise};
+use super::level::{FixedFaces, Level, LevelParams, Nodes};
+use super::operator::{apply, energy};
+use super::prolong::{band, prolong};
+use super::seed::boundary_potential;
+use super::solve::{SolveParams, conjugate_gradients};
+use crate::domain::{Cells, Lattice, LatticeError, LatticePoints};
+use crate::field::LatticeField;
+use crate::monitor::{Cancelled, Monitor, check};
+
+/// What is known about the scene before it is fitted. It decides how the sign of F is seeded.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Scene {
+    /// A body seen from all sides: everything at the faces of the box is outside.
+    Object,
+    /// Ground and what stands on it: the top of the box is sky, the bottom is solid.
+    Terrain,
+    /// Terrain scanned from above, so that walls hold few points: adds the column prior.
+    Airborne,
+    /// Nothing is known; the sign comes from the smallest eigenvector of the order-2 problem.
+    Free,
+}
+
+impl Scene {
+    fn faces(self) -> FixedFaces {
+        match self {
+            Self::Object => FixedFaces::All,
+            Self::Terrain | Self::Airborne => FixedFaces::TopBottom,
+            Self::Free => FixedFaces::None,
+        }
+    }
+}
+
+/// How to fit.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FitParams {
+    /// How the sign is seeded.
+    pub scene: Scene,
+    /// Spacing of the finest lattice, in the unit of the points.
+    pub resolution: f64,
+    /// Screening: the weight alpha of the data term. 4 suits noise of a fifth of a cell.
+    pub screening: f64,
+    /// How far the box around the points reaches beyond them, relative to their longest side.
+    pub padding_rel: f64,
+}
+
+impl FitParams {
+    /// The defaults for a scene at a resolution.
+    #[must_use]
+    pub fn new(scene: Scene, resolution: f64) -> Self {
+        Self { scene, resolution, screening: 4.0, padding_rel: 0.1 }
+    }
+}
+
+/// A fit that could not be made.
+#[derive(Debug, thiserror::Error)]
+pub enum FitError {
+    /// The lattice cannot be made.
+    #[error(transparent)]
+    Lattice(#[from] LatticeError),
+    /// Too few points, or all on one line or plane too thin to hold a surface.
+    #[error("{found} distinct points are too few to fit a surface: at least {needed} are needed")]
+    TooFewPoints {
+        /// Points found.
+        found: usize,
+        /// Points needed.
+        needed: usize,
+    },
+    /// The screening weight is not a positive number.
+    #[error("a screening of {0} is not possible: give a positive number")]
+    Screening(f64),
+    /// The monitor asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+/// One step of a level.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Iteration {
+    /// R(F) per occupied cell before the step.
+    pub rayleigh_quotient: f64,
+    /// Steps of conjugate gradients.
+    pub solver_steps: usize,
+}
+
+/// What happened on a level.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LevelReport {
+    /// Level; 0 is the coarsest.
+    pub level: u32,
+    /// Spacing of the lattice.
+    pub spacing: f64,
+    /// Cells that hold points.
+    pub occupied_cells: usize,
+    /// Nodes whose value was sought.
+    pub free_nodes: u64,
+    /// Bytes of the level and its solver.
+    pub bytes: usize,
+    /// Wall time.
+    pub seconds: f64,
+    /// Whether a new seed on this level beat the one continued from the level before.
+    pub seeded: bool,
+    /// R(F) of the rejected start, where two were compared.
+    pub other_rayleigh_quotient: Option<f64>,
+    /// Step by step.
+    pub iterations: Vec<Iteration>,
+    /// R(F) per occupied cell at the end.
+    pub rayleigh_quotient: f64,
+    /// |grad F| at the data, 5, 50 and 95 %.
+    pub gradient_quantiles: [f64; 3],
+}
+
+/// What happened in a fit.
+#[derive(Debug, Clone, PartialEq, Serialize, Default)]
+pub struct FitReport {
+    /// Level by level, coarsest first.
+    pub levels: Vec<LevelReport>,
+    /// Largest number of bytes held at once by the levels and the solver.
+    pub peak_bytes: usize,
+}
+
+/// Steps on each level after the first; the last entry serves all further levels.
+const STEPS: [usize; 4] = [30, 15, 6, 3];
+const SOLVE: SolveParams = SolveParams { tolerance: 1e-3, max_steps: 200 };
+/// A new seed is tried while a level has at most this many nodes across.
+const MAX_SEED_NODES: u32 = 96;
+/// A new seed replaces the continued F if its R is lower by more than this share.
+const SEED_MARGIN: f64 = 0.015;
+
+/// A level with F on it.
+struct Fitted {
+    level: Level,
+    f: Vec<f32>,
+    report: LevelReport,
+}
+
+/// Fits F to points.
+///
+/// # Errors
+/// If the lattice cannot be made, there are too few points, or the monitor asks to stop.
+pub fn fit(
+    points: &[[f64; 3]],
+    params: &FitParams,
+    monitor: &dyn Monitor,
+) -> Result<(LatticeField, FitReport), FitError> {
+    if !(params.screening.is_finite() && params.screening > 0.0) {
+        return Err(FitError::Screening(params.screening));
+    }
+    let (low, high) = bounds(points);
+    let lattice = Lattice::around(low, high, params.resolution, params.padding_rel)?;
+    monitor.stage("sorting the points");
+    let sorted = LatticePoints::new(&lattice, points);
+    check(monitor)?;
+    let cascade = Cascade { lattice, points: sorted, params, monitor };
+    let (fitted, report) = cascade.run()?;
+    let Fitted { level, f, .. } = fitted;
+    Ok((LatticeField::new(cascade.lattice, level.blocks, level.known, f, level.cells), report))
+}
+
+fn bounds(points: &[[f64; 3]]) -> ([f64; 3], [f64; 3]) {
+    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    for p in points {
+        for a in 0..3 {
+            low[a] = low[a].min(p[a]);
+            high[a] = high[a].max(p[a]);
+        }
+    }
+    (low, high)
+}
+
+struct Cascade<'a> {
+    lattice: Lattice,
+    points: LatticePoints,
+    params: &'a FitParams,
+    monitor: &'a dyn Monitor,
+}
+
+impl Cascade<'_> {
+    fn run(&self) -> Result<(Fitted, FitReport), FitError> {
+        let mut report = FitReport::default();
+        let mut current = self.seeded(0)?;
+        let mut climbing = true;
+        for index in 1..=self.lattice.finest {
+            report.levels.push(current.report.clone());
+            let nodes = self.lattice.nodes_at(index).into_iter().max().unwrap_or(0);
+            climbing &= nodes <= MAX_SEED_NODES;
+            current = if climbing { self.climb(current, index)? } else { self.refined(&current, index)? };
+        }
+        report.levels.push(current.report.clone());
+        report.peak_bytes = report.levels.iter().map(|l| l.bytes).max().unwrap_or(0);
+        Ok((current, report))
+    }
+
+    fn level_params(&self) -> LevelParams {
+        LevelParams {
+            alpha: self.params.screening as f32,
+            faces: self.params.scene.faces(),
+            column_prior: self.params.scene == Scene::Airborne,
+        }
+    }
+
+    fn dense_level(&self, index: u32) -> Level {
+        let cells = Cells::new(&self.lattice, &self.points, index);
+        let params = self.level_params();
+        let nodes = Nodes::dense(&self.lattice, cells, index, params.faces);
+        Level::new(&self.lattice, &self.points, index, nodes, &params)
+    }
+
+    /// Seeds anew on a dense level and iterates to rest.
+    fn seeded(&self, index: u32) -> Result<Fitted, FitError> {
+        let start = std::time::Instant::now();
+        let level = self.dense_level(index);
+        self.seed_on(level, start)
+    }
+
+    fn seed_on(&self, level: Level, start: std::time::Instant) -> Result<Fitted, FitError> {
+        let f = boundary_potential(&level, self.params.scene.faces());
+        let mut fitted = self.iterate(level, f, STEPS[0], start)?;
+        fitted.report.seeded = true;
+        Ok(fitted)
+    }
+
+    /// Both continues and seeds anew on a dense level, and keeps the lower R.
+    fn climb(&self, coarse: Fitted, index: u32) -> Result<Fitted, FitError> {
+        let start = std::time::Instant::now();
+        let level = self.dense_level(index);
+        let f = prolong(&coarse.level, &coarse.f, &level.blocks, &level.known);
+        drop(coarse);
+        let continued = self.iterate(level, f, STEPS[(index as usize).min(STEPS.len() - 1)], start)?;
+        let Fitted { level, f, report } = continued;
+        let mut seeded = self.seed_on(level, start)?;
+        let (old, new) = (report.rayleigh_quotient, seeded.report.rayleigh_quotient);
+        if new < (1.0 - SEED_MARGIN) * old {
+            seeded.report.other_rayleigh_quotient = Some(old);
+            return Ok(seeded);
+        }
+        let report =
+            LevelReport { other_rayleigh_quotient: Some(new), seconds: start.elapsed().as_secs_f64(), ..report };
+        Ok(Fitted { level: seeded.level, f, report })
+    }
+
+    /// Continues on the band of the next level.
+    fn refined(&self, coarse: &Fitted, index: u32) -> Result<Fitted, FitError> {
+        let start = std::time::Instant::now();
+        let cells = Cells::new(&self.lattice, &self.points, index);
+        let params = self.level_params();
+        let nodes = band(&self.lattice, &self.points, cells, &coarse.level, &coarse.f, params.faces);
+        let level = Level::new(&self.lattice, &self.points, index, nodes, &params);
+        let f = prolong(&coarse.level, &coarse.f, &level.blocks, &level.known);
+        self.iterate(level, f, STEPS[(index as usize).min(STEPS.len() - 1)], start)
+    }
+
+    fn iterate(
+        &self,
+        level: Level,
+        mut f: Vec<f32>,
+        steps: usize,
+        start: std::time::Instant,
+    ) -> Result<Fitted, FitError> {
+        let n = level.len();
+        let (mut r, mut p, mut q, mut s) = (vec![0.0_f32; n], vec![0.0_f32; n], vec![0.0_f32; n], vec![0.0_f32; n]);
+        let occupied = level.cells.len() as f64;
+        let mut iterations: Vec<Iteration> = Vec::with_capacity(steps);
+        let mut last = f64::INFINITY;
+        let mut quotient = f64::INFINITY;
+        for step in 0..=steps {
+            check(self.monitor)?;
+            let norm = linearise(&level, &f, [&mut p, &mut q, &mut s], &mut r);
+            let energy = energy(&level, &f);
+            quotient = energy * occupied / (norm * norm);
+            if step == steps || (last - quotient).abs() < 1e-4 * quotient {
+                break;
+            }
+            last = quotient;
+            let best = norm / energy;
+            let scale = rescale_and_residual(&level, &mut f, &mut r, &mut q, best);
+            let solver_steps = conjugate_gradients(&level, &mut f, &mut r, &mut p, &mut q, scale, SOLVE);
+            iterations.push(Iteration { rayleigh_quotient: quotient, solver_steps });
+        }
+        let report = LevelReport {
+            level: level.index,
+            spacing: self.lattice.spacing_at(level.index),
+            occupied_cells: level.cells.len(),
+            free_nodes: level.free_nodes(),
+            bytes: level.bytes() + 5 * 4 * n,
+            seconds: start.elapsed().as_secs_f64(),
+            seeded: false,
+            other_rayleigh_quotient: None,
+            iterations,
+            rayleigh_quotient: quotient,
+            gradient_quantiles: gradient_lengths(&level, &f),
+        };
+        Ok(Fitted { level, f, report })
+    }
+}
+
+/// Scales F by its best multiple and turns the right-hand side in `r` into the residual; returns the norm of the former.
+fn rescale_and_residual(level: &Level, f: &mut [f32], r: &mut [f32], q: &mut [f32], best: f64) -> f64 {
+    use rayon::prelude::*;
+    apply(level, f, q);
+    let best = best as f32;
+    let partial: Vec<f64> = f
+        .par_chunks_exact_mut(512)
+        .zip(r.par_chunks_exact_mut(512).zip(q.par_chunks_exact(512)))
+        .with_min_len(32)
+        .map(|(f, (r, q))| {
+            let mut square = 0.0_f32;
+            for k in 0..512 {
+                square += r[k] * r[k];
+                f[k] *= best;
+                r[k] -= best * q[k];
+            }
+            f64::from(square)
+        })
+        .collect();
+    partial.into_iter().sum::<f64>().sqrt()
+}

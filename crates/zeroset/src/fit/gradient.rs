@@ -1,0 +1,189 @@
+//! The recovered gradient at the data, the normalisation N(F), and the right-hand side that is its transpose.
+
+use rayon::prelude::*;
+
+use super::level::Level;
+use super::operator::{LANES, row_at};
+use super::prior::{AIR, GAMMA};
+use super::samples::Sample;
+use crate::domain::{Halo, NONE, TETRAHEDRA, gather, halo_index, mask_row, neighbor_code};
+
+/// Nodes 0..=8 along each axis: those that the samples of one block reach.
+const REACH: usize = 9 * 9 * 9;
+
+/// Sums of w b n at the nodes that one block's samples reach, x + 9 y + 81 z.
+type Splat = [[f32; 3]; REACH];
+
+/// Freezes n_i = g_i / |g_i| and sums w_i n_i to the nodes; returns N(F) = sum w |g| + gamma sum t F.
+///
+/// `vectors` receives the three components; `rhs` the right-hand side div(sum w n delta) + gamma t at the free nodes.
+/// Both in a fixed order.
+pub(super) fn linearise(level: &Level, f: &[f32], vectors: [&mut [f32]; 3], rhs: &mut [f32]) -> f64 {
+    let blocks = &level.blocks;
+    let (splats, partial): (Vec<Box<Splat>>, Vec<f64>) = (0..level.cells.block_keys.len())
+        .into_par_iter()
+        .with_min_len(8)
+        .map_init(
+            || [0.0_f32; 2304],
+            |halo, d| {
+                let b = blocks.keys.binary_search(&level.cells.block_keys[d]).expect("a block of data is stored");
+                gather::<f32, 1, 2>(f, &blocks.neighbors[b], 0.0, halo);
+                let mut splat = Box::new([[0.0; 3]; REACH]);
+                let sum = splat_block(halo, &level.samples.of_block[d], &mut splat);
+                (splat, sum)
+            },
+        )
+        .unzip();
+    let data = partial.into_iter().sum::<f64>();
+    let [vx, vy, vz] = vectors;
+    vx.par_chunks_exact_mut(512)
+        .zip(vy.par_chunks_exact_mut(512).zip(vz.par_chunks_exact_mut(512)))
+        .enumerate()
+        .with_min_len(16)
+        .for_each(|(b, (vx, (vy, vz)))| join_splats(level, b, &splats, [vx, vy, vz]));
+    drop(splats);
+    let told = divergence(level, f, [vx, vy, vz], rhs);
+    data + told
+}
+
+/// The recovered gradient of a sample: central differences at its four nodes, interpolated.
+#[inline(always)]
+fn recovered_gradient(halo: &Halo<f32>, sample: &Sample) -> [f32; 3] {
+    let mut g = [0.0; 3];
+    for (at, weight) in nodes_of(sample).zip(sample.barycentric) {
+        for (axis, step) in [1, 16, 192].into_iter().enumerate() {
+            g[axis] += 0.5 * weight * (halo[at + step] - halo[at - step]);
+        }
+    }
+    g
+}
+
+#[inline(always)]
+fn nodes_of(sample: &Sample) -> impl Iterator<Item = usize> {
+    let local = sample.local;
+    let origin = [local & 7, local >> 3 & 7, local >> 6].map(i32::from);
+    TETRAHEDRA[usize::from(sample.tetrahedron)].corners.into_iter().map(move |corner| {
+        let [x, y, z]: [i32; 3] = std::array::from_fn(|a| origin[a] + (corner >> a & 1) as i32);
+        halo_index(x, y, z)
+    })
+}
+
+/// Sums one block's samples; returns sum w |g|.
+fn splat_block(halo: &Halo<f32>, samples: &[Sample], splat: &mut Splat) -> f64 {
+    let mut sum = 0.0_f64;
+    for sample in samples {
+        let g = recovered_gradient(halo, sample);
+        let length = (g[0] * g[0] + g[1] * g[1] + g[2] * g[2]).sqrt();
+        if !(length > 0.0) {
+            continue;
+        }
+        sum += f64::from(sample.weight * length);
+        let n = g.map(|c| sample.weight * (c / length));
+        let local = sample.local;
+        let origin = usize::from(local & 7) + 9 * usize::from(local >> 3 & 7) + 81 * usize::from(local >> 6);
+        for (corner, weight) in TETRAHEDRA[usize::from(sample.tetrahedron)].corners.into_iter().zip(sample.barycentric)
+        {
+            let node = origin + (corner & 1) + 9 * (corner >> 1 & 1) + 81 * (corner >> 2);
+            for axis in 0..3 {
+                splat[node][axis] += weight * n[axis];
+            }
+        }
+    }
+    sum
+}
+
+/// The vectors at the nodes of block `b`: its own splat and the last layers of the seven blocks before it.
+fn join_splats(level: &Level, b: usize, splats: &[Box<Splat>], vectors: [&mut [f32]; 3]) {
+    let [vx, vy, vz] = vectors;
+    vx.fill(0.0);
+    vy.fill(0.0);
+    vz.fill(0.0);
+    for before in 0..8_usize {
+        let step: [i32; 3] = std::array::from_fn(|a| -((before >> a & 1) as i32));
+        let other = level.blocks.neighbors[b][neighbor_code(step)];
+        if other == NONE || level.data_block[other as usize] == NONE {
+            continue;
+        }
+        let splat = &splats[level.data_block[other as usize] as usize];
+        let range = |a: usize| if before >> a & 1 == 1 { 8..9 } else { 0..8 };
+        for z in range(2) {
+            for y in range(1) {
+                for x in range(0) {
+                    let v = splat[x + 9 * y + 81 * z];
+                    let node = (x & 7) + 8 * (y & 7) + 64 * (z & 7);
+                    vx[node] += v[0];
+                    vy[node] += v[1];
+                    vz[node] += v[2];
+                }
+            }
+        }
+    }
+}
+
+/// rhs = sum over axes of (V(q - e) - V(q + e)) / 2, plus gamma t, at the free nodes. Returns gamma sum t F.
+fn divergence(level: &Level, f: &[f32], vectors: [&[f32]; 3], rhs: &mut [f32]) -> f64 {
+    let partial: Vec<f64> = rhs
+        .par_chunks_exact_mut(512)
+        .enumerate()
+        .with_min_len(8)
+        .map_init(
+            || [0.0_f32; 2304],
+            |halo, (b, rhs)| {
+                rhs.fill(0.0);
+                let free = &level.free[b];
+                let neighbors = &level.blocks.neighbors[b];
+                if neighbors.iter().any(|&n| n != NONE && level.data_block[n as usize] != NONE) {
+                    for (v, step) in vectors.into_iter().zip([1, 16, 192]) {
+                        gather::<f32, 1, 1>(v, neighbors, 0.0, halo);
+                        for row in 0..64 {
+                            let at = halo_index(0, (row & 7) as i32, (row >> 3) as i32);
+                            let (before, after) = (row_at(halo, at - step), row_at(halo, at + step));
+                            let lanes = &LANES[mask_row(free, row & 7, row >> 3) as usize];
+                            for k in 0..8 {
+                                rhs[row * 8 + k] += 0.5 * (before[k] - after[k]) * lanes[k];
+                            }
+                        }
+                    }
+                }
+                level.prior.as_ref().map_or(0.0, |prior| {
+                    let mut told = 0.0_f32;
+                    for row in 0..64 {
+                        let (y, z) = (row & 7, row >> 3);
+                        let (air, solid) = (mask_row(&prior.air[b], y, z), mask_row(&prior.solid[b], y, z));
+                        if air | solid == 0 {
+                            continue;
+                        }
+                        for k in 0..8 {
+                            let target = GAMMA * AIR * (LANES[air as usize][k] - LANES[solid as usize][k]);
+                            rhs[row * 8 + k] += target;
+                            told += target * f[b * 512 + row * 8 + k];
+                        }
+                    }
+                    f64::from(told)
+                })
+            },
+        )
+        .collect();
+    partial.into_iter().sum()
+}
+
+/// The quantiles (5, 50, 95 %) of |g| at the samples, relative to their largest: 1 where the sheet is resolved, small where
+/// two sheets cancel.
+pub(super) fn gradient_lengths(level: &Level, f: &[f32]) -> [f64; 3] {
+    let mut lengths: Vec<f32> = (0..level.cells.block_keys.len())
+        .into_par_iter()
+        .map_init(
+            || [0.0_f32; 2304],
+            |halo, d| {
+                let b = level.blocks.keys.binary_search(&level.cells.block_keys[d]).expect("a block of data is stored");
+                gather::<f32, 1, 2>(f, &level.blocks.neighbors[b], 0.0, halo);
+                let length = |s| recovered_gradient(halo, s).iter().map(|c| c * c).sum::<f32>().sqrt();
+                level.samples.of_block[d].iter().map(length).collect::<Vec<_>>()
+            },
+        )
+        .flatten_iter()
+        .collect();
+    lengths.par_sort_unstable_by(f32::total_cmp);
+    let at = |share: f64| f64::from(lengths[((lengths.len() - 1) as f64 * share) as usize]);
+    if lengths.is_empty() { [0.0; 3] } else { [at(0.05), at(0.5), at(0.95)] }
+}

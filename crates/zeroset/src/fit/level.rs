@@ -1,0 +1,133 @@
+//! One level of the cascade: which nodes exist, which may move, and what the data say about them.
+
+use rayon::prelude::*;
+
+use super::prior::Prior;
+use super::samples::Samples;
+use super::stencil::Stencil;
+use crate::domain::{Blocks, Cells, Lattice, LatticePoints, Mask, NONE};
+
+/// Which faces of the box hold F fixed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum FixedFaces {
+    /// All six: outside.
+    All,
+    /// The top (outside) and the bottom (inside).
+    TopBottom,
+    /// None.
+    None,
+}
+
+impl FixedFaces {
+    /// The nodes of block `b` on fixed faces.
+    pub(super) fn mask(self, blocks: &Blocks, b: usize) -> Mask {
+        let axes = match self {
+            Self::All => 0..3,
+            Self::TopBottom => 2..3,
+            Self::None => 0..0,
+        };
+        let mut mask = [0_u64; 8];
+        for axis in axes {
+            for far in [false, true] {
+                if blocks.at_domain_face(b, axis, far) {
+                    for (z, word) in mask.iter_mut().enumerate() {
+                        *word |= match (axis, far) {
+                            (0, false) => 0x0101_0101_0101_0101,
+                            (0, true) => 0x8080_8080_8080_8080,
+                            (1, false) => 0xff,
+                            (1, true) => 0xff << 56,
+                            (_, _) => {
+                                if z == if far { 7 } else { 0 } {
+                                    u64::MAX
+                                } else {
+                                    0
+                                }
+                            }
+                        };
+                    }
+                }
+            }
+        }
+        mask
+    }
+}
+
+/// A level, ready to be solved on.
+pub(super) struct Level {
+    pub(super) index: u32,
+    pub(super) blocks: Blocks,
+    /// Nodes that have a value.
+    pub(super) known: Vec<Mask>,
+    /// Nodes whose value is sought; a subset of the known ones whose neighbours are all known.
+    pub(super) free: Vec<Mask>,
+    pub(super) cells: Cells,
+    /// Place of each block in `cells`, or [`NONE`].
+    pub(super) data_block: Vec<u32>,
+    pub(super) samples: Samples,
+    pub(super) stencil: Stencil,
+    pub(super) prior: Option<Prior>,
+}
+
+/// What stays the same from level to level.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct LevelParams {
+    pub(super) alpha: f32,
+    pub(super) faces: FixedFaces,
+    pub(super) column_prior: bool,
+}
+
+impl Level {
+    pub(super) fn new(
+        lattice: &Lattice,
+        points: &LatticePoints,
+        index: u32,
+        nodes: Nodes,
+        params: &LevelParams,
+    ) -> Self {
+        let Nodes { blocks, known, free, cells } = nodes;
+        let shift = lattice.shift_at(index);
+        let data_block = data_blocks(&blocks, &cells);
+        let samples = Samples::new(points, &cells, shift);
+        let stencil = Stencil::new(&blocks, &data_block, points, &cells, shift, params.alpha);
+        let prior = params.column_prior.then(|| Prior::new(&blocks, &cells, &free));
+        Self { index, blocks, known, free, cells, data_block, samples, stencil, prior }
+    }
+
+    /// Number of stored values.
+    pub(super) fn len(&self) -> usize {
+        self.blocks.len() * 512
+    }
+
+    pub(super) fn free_nodes(&self) -> u64 {
+        self.free.iter().flatten().map(|w| u64::from(w.count_ones())).sum()
+    }
+
+    /// Bytes held by this level, without the vectors of the solver.
+    pub(super) fn bytes(&self) -> usize {
+        let blocks = self.blocks.len() * (27 * 4 + 8 + 12 + 24 + 2 * 64 + if self.prior.is_some() { 128 } else { 0 });
+        blocks + self.stencil.bytes() + self.samples.bytes() + self.cells.len() * 6
+    }
+}
+
+/// The nodes of a level before anything is summed on them.
+pub(super) struct Nodes {
+    pub(super) blocks: Blocks,
+    pub(super) known: Vec<Mask>,
+    pub(super) free: Vec<Mask>,
+    pub(super) cells: Cells,
+}
+
+impl Nodes {
+    /// Every node of a level; all are free but those on fixed faces.
+    pub(super) fn dense(lattice: &Lattice, cells: Cells, index: u32, faces: FixedFaces) -> Self {
+        let blocks = Blocks::dense(lattice.blocks_at(index));
+        let known = vec![[u64::MAX; 8]; blocks.len()];
+        let free = (0..blocks.len()).map(|b| faces.mask(&blocks, b).map(|w| !w)).collect();
+        Self { blocks, known, free, cells }
+    }
+}
+
+/// Place of each block in the cells' list of blocks, or [`NONE`].
+pub(super) fn data_blocks(blocks: &Blocks, cells: &Cells) -> Vec<u32> {
+    blocks.keys.par_iter().map(|key| cells.block_keys.binary_search(key).map_or(NONE, |i| i as u32)).collect()
+}

@@ -1,0 +1,41 @@
+//! The sign of F on the first level: boundary potentials, pulled to zero at the data.
+//!
+//! F is held on some faces of the box and the energy is minimised with no other driving term: field lines flood in from outside
+//! and stop at the data. In a deep cavity the field is exponentially weak; it is solved in f64, because the first step with
+//! p = 1 asks for its direction only.
+
+use super::level::{FixedFaces, Level};
+use super::operator::apply;
+use super::prior::AIR;
+use super::solve::{SolveParams, conjugate_gradients};
+
+/// Values on the faces of the box, zero elsewhere.
+fn boundary_values(level: &Level, faces: FixedFaces) -> Vec<f64> {
+    let outside = f64::from(AIR);
+    let mut f = vec![0.0; level.len()];
+    for b in 0..level.blocks.len() {
+        let mask = faces.mask(&level.blocks, b);
+        for local in 0..512 {
+            if crate::domain::mask_get(&mask, local) {
+                let below =
+                    faces == FixedFaces::TopBottom && level.blocks.at_domain_face(b, 2, false) && local >> 6 == 0;
+                f[b * 512 + local] = if below { -outside } else { outside };
+            }
+        }
+    }
+    f
+}
+
+/// The seed on a dense level.
+pub(super) fn boundary_potential(level: &Level, faces: FixedFaces) -> Vec<f32> {
+    let mut f = boundary_values(level, faces);
+    let (mut r, mut p, mut q) = (vec![0.0; f.len()], vec![0.0; f.len()], vec![0.0; f.len()]);
+    apply(level, &f, &mut q);
+    for (r, q) in r.iter_mut().zip(&q) {
+        *r = -q;
+    }
+    let scale = r.iter().map(|r| r * r).sum::<f64>().sqrt();
+    let params = SolveParams { tolerance: 1e-10, max_steps: 2000 };
+    conjugate_gradients(level, &mut f, &mut r, &mut p, &mut q, scale, params);
+    f.into_iter().map(|v| v as f32).collect()
+}
