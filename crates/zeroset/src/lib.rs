@@ -12,3 +12,5 @@ pub mod mesh;
 pub mod monitor;
 pub mod sample;
 pub mod spatial;
+
+mod vec3;
