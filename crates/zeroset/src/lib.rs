@@ -16,3 +16,5 @@ pub mod mesh;
 pub mod monitor;
 pub mod sample;
 pub mod spatial;
+
+mod vec3;
