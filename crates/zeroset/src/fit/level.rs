@@ -87,8 +87,9 @@ impl Level {
         let Nodes { blocks, known, free, cells } = nodes;
         let shift = lattice.shift_at(index);
         let data_block = data_blocks(&blocks, &cells);
-        let samples = Samples::new(points, &cells, shift);
-        let stencil = Stencil::new(&blocks, &data_block, points, &cells, shift, params.alpha);
+        let weights = point_weights(&blocks, &data_block, &cells);
+        let samples = Samples::new(points, &cells, &weights, shift);
+        let stencil = Stencil::new(&blocks, &data_block, points, &cells, &weights, shift, params.alpha);
         let prior = params.column_prior.then(|| Prior::new(&blocks, &cells, &free));
         Self { index, blocks, known, free, cells, data_block, samples, stencil, prior }
     }
@@ -130,4 +131,58 @@ impl Nodes {
 /// Place of each block in the cells' list of blocks, or [`NONE`].
 pub(super) fn data_blocks(blocks: &Blocks, cells: &Cells) -> Vec<u32> {
     blocks.keys.par_iter().map(|key| cells.block_keys.binary_search(key).map_or(NONE, |i| i as u32)).collect()
+}
+
+/// The weight of each point of a cell: one over the mean number of points in the occupied cells among it and its 26
+/// neighbours.
+///
+/// So an occupied cell weighs about the same whatever the density of the scan, but a cell that the surface only clips, and that
+/// holds few points for this reason, weighs less than a whole one: the weights measure area.
+fn point_weights(blocks: &Blocks, data_block: &[u32], cells: &Cells) -> Vec<f32> {
+    let parts: Vec<Vec<f32>> = cells
+        .block_keys
+        .par_iter()
+        .with_min_len(16)
+        .map_init(
+            || [0_u32; 1000],
+            |counts, key| {
+                let b = blocks.keys.binary_search(key).expect("a block of data is stored");
+                counts.fill(0);
+                let at = |c: [i32; 3]| ((c[0] + 1) + 10 * (c[1] + 1) + 100 * (c[2] + 1)) as usize;
+                for (code, &other) in blocks.neighbors[b].iter().enumerate() {
+                    if other == NONE || data_block[other as usize] == NONE {
+                        continue;
+                    }
+                    let step = [code % 3, code / 3 % 3, code / 9].map(|s| 8 * (s as i32 - 1));
+                    for cell in cells.of_block(data_block[other as usize] as usize) {
+                        let local = cells.local[cell];
+                        let place: [i32; 3] = std::array::from_fn(|a| i32::from(local >> (3 * a) & 7) + step[a]);
+                        if place.iter().all(|c| (-1..=8).contains(c)) {
+                            counts[at(place)] = cells.points(cell).len() as u32;
+                        }
+                    }
+                }
+                let own = data_block[b] as usize;
+                cells
+                    .of_block(own)
+                    .map(|cell| {
+                        let local = cells.local[cell];
+                        let place: [i32; 3] = std::array::from_fn(|a| i32::from(local >> (3 * a) & 7));
+                        let (mut sum, mut occupied) = (0, 0);
+                        for dz in -1..=1 {
+                            for dy in -1..=1 {
+                                for dx in -1..=1 {
+                                    let count = counts[at([place[0] + dx, place[1] + dy, place[2] + dz])];
+                                    sum += count;
+                                    occupied += u32::from(count > 0);
+                                }
+                            }
+                        }
+                        occupied as f32 / sum as f32
+                    })
+                    .collect()
+            },
+        )
+        .collect();
+    parts.concat()
 }

@@ -25,7 +25,7 @@ pub(super) struct Samples {
 }
 
 impl Samples {
-    pub(super) fn new(points: &LatticePoints, cells: &Cells, shift: u32) -> Self {
+    pub(super) fn new(points: &LatticePoints, cells: &Cells, weights: &[f32], shift: u32) -> Self {
         let of_block = (0..cells.block_keys.len())
             .into_par_iter()
             .with_min_len(16)
@@ -41,10 +41,9 @@ impl Samples {
                         }
                         sums[t].1 += 1;
                     }
-                    let in_cell = cells.points(cell).len() as f32;
                     for (t, (sum, count)) in sums.into_iter().enumerate().filter(|(_, s)| s.1 > 0) {
                         samples.push(Sample {
-                            weight: count as f32 / in_cell,
+                            weight: count as f32 * weights[cell],
                             barycentric: sum.map(|s| s / count as f32),
                             local: cells.local[cell],
                             tetrahedron: t as u16,

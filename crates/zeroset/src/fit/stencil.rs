@@ -41,13 +41,14 @@ impl Stencil {
         data_block: &[u32],
         points: &LatticePoints,
         cells: &Cells,
+        weights: &[f32],
         shift: u32,
         alpha: f32,
     ) -> Self {
         let (present, rows) = (0..blocks.len())
             .into_par_iter()
             .with_min_len(16)
-            .map(|b| block_rows(&blocks.neighbors[b], data_block, points, cells, shift, alpha))
+            .map(|b| block_rows(&blocks.neighbors[b], data_block, points, cells, weights, shift, alpha))
             .unzip();
         Self { present, rows }
     }
@@ -63,6 +64,7 @@ fn block_rows(
     data_block: &[u32],
     points: &LatticePoints,
     cells: &Cells,
+    weights: &[f32],
     shift: u32,
     alpha: f32,
 ) -> (u64, Box<[StencilRow]>) {
@@ -84,7 +86,7 @@ fn block_rows(
             let rows = dense.get_or_insert_with(|| Box::new([[[0.0; 8]; 15]; 64]));
             for (t, moments) in cell_moments(points, cells, cell, shift).into_iter().enumerate() {
                 let Some(moments) = moments else { continue };
-                let scale = alpha / cells.points(cell).len() as f32;
+                let scale = alpha * weights[cell];
                 present |= add_tetrahedron(rows, place, t, &moments, scale);
             }
         }
