@@ -60,7 +60,7 @@ pub(super) fn brick() -> Mesh {
     bricks([&[0.0, 1.0], &[0.0, 0.8], &[0.0, 0.6]], |_| true)
 }
 
-/// An L of 1 x 0.8, arms 0.4 and 0.3 wide, 0.5 high: one concave edge, 0.26 in volume.
+/// An L of 1 x 0.8, arms 0.4 and 0.3 wide, 0.5 high: one concave edge, 0.25 in volume.
 pub(super) fn l_block() -> Mesh {
     bricks([&[0.0, 0.4, 1.0], &[0.0, 0.3, 0.8], &[0.0, 0.5]], |[i, j, _]| i == 0 || j == 0)
 }
