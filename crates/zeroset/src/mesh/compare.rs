@@ -33,6 +33,19 @@
 //! # Source
 //! Two-way sampled distances: Cignoni, Rocchini and Scopigno, "Metro", 1998. F-score of surfaces: Knapitsch, Park, Zhou and Koltun,
 //! "Tanks and Temples", 2017.
+//!
+//! ```
+//! use zeroset::mesh::{CompareParams, compare};
+//! use zeroset::sample::{Scene, SceneKind};
+//!
+//! let truth = Scene::new(SceneKind::Box, 0).truth;
+//! let mut lifted = truth.clone();
+//! lifted.world_from_local[2] = 0.001;
+//! let params = CompareParams { samples: 10_000, ..CompareParams::default() };
+//! let report = compare(&lifted, &truth, &params, &()).unwrap();
+//! assert!((report.overall.distances.combined.max - 0.001).abs() < 1e-12);
+//! assert_eq!(report.overall.f_score, 1.0);
+//! ```
 
 use super::{Mesh, MeshError, SHARP_ANGLE, Topology, creases, topology};
 use crate::monitor::{Cancelled, Monitor, check};
