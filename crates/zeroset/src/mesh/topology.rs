@@ -20,7 +20,7 @@
 //! vertices are counted as degenerate, too, but take part, as they hold their neighbours together.
 //!
 //! # Cost
-//! O(V + F log d), d the number of neighbours of a vertex; 10 million triangles take a few seconds and about 40 bytes each.
+//! O(V + F log d), d the number of neighbours of a vertex; 10 million triangles take a few seconds and about 65 bytes each.
 //!
 //! # Guaranteed
 //! The same result, sums of areas included, on any number of threads. Area and volume are summed in chunks of fixed size.
