@@ -1,8 +1,12 @@
 //! Point clouds: positions with what was measured beside them.
 
 mod offset;
+mod outliers;
+mod spacing;
 
 pub use offset::choose_offset;
+pub use outliers::isolated_points;
+pub use spacing::Spacing;
 
 /// Values measured at each point, or carried by each vertex of a mesh. Each present list has one entry per point.
 #[derive(Debug, Clone, Default, PartialEq)]

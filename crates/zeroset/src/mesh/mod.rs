@@ -1,4 +1,16 @@
-//! Triangle meshes.
+//! Triangle meshes, and what can be measured on them.
+
+mod compare;
+mod creases;
+mod edges;
+mod topology;
+
+#[cfg(test)]
+mod tests;
+
+pub use compare::{Agreement, CompareError, CompareParams, CompareReport, Distances, OneWay, Role, compare};
+pub use creases::{SHARP_ANGLE, creases};
+pub use topology::{Component, Topology, topology};
 
 use crate::cloud::Attributes;
 
@@ -17,4 +29,33 @@ pub struct Mesh {
     pub attributes: Attributes,
     /// The coordinate reference system as the input stated it.
     pub crs: Option<String>,
+}
+
+/// A mesh that no examination can be made of.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum MeshError {
+    /// A triangle names a vertex that is not there.
+    #[error("triangle {triangle} names vertex {vertex}, but there are only {count} vertices")]
+    VertexMissing {
+        /// The triangle.
+        triangle: usize,
+        /// The vertex that it names.
+        vertex: u32,
+        /// Number of vertices.
+        count: usize,
+    },
+    /// A coordinate is infinite or not a number.
+    #[error("vertex {vertex} is at {position:?}, which is not finite")]
+    NotFinite {
+        /// The vertex.
+        vertex: usize,
+        /// Where it is said to be.
+        position: [f64; 3],
+    },
+    /// More triangles than can be numbered.
+    #[error("the mesh has {count} triangles, more than {}; cut it into pieces", edges::MOST_TRIANGLES)]
+    TooManyTriangles {
+        /// Number of triangles.
+        count: usize,
+    },
 }

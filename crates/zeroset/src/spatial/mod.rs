@@ -11,7 +11,7 @@
 //!
 //! # Cost
 //! Building n items costs O(n log n) and runs on all threads. A query visits O(log n) nodes for data that lie on a
-//! surface. Memory: about 50 bytes a point and 130 bytes a triangle.
+//! surface. Memory: about 50 bytes a point and 170 bytes a triangle.
 //!
 //! # Guaranteed
 //! - The same answer whatever the number of threads: the tree is determined by its items, and among equal distances the

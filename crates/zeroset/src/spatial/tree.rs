@@ -151,7 +151,7 @@ impl<T: Item> Tree<T> {
         self.descend(self.root(), q, collector);
     }
 
-    /// Recursion instead of a stack of its own: setting up an array of waiting subtrees cost more than the search.
+    /// Recursion, as its frames are free: a stack of its own would have to be cleared or allocated for each search.
     fn descend(&self, subtree: Subtree, q: Vec3, collector: &mut impl Collector<T>) {
         if subtree.levels == 0 {
             collector.leaf(self.items_of(subtree));
