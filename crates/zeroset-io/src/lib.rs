@@ -35,7 +35,7 @@ mod number;
 mod output;
 mod ply;
 
-pub use cloud::{CloudFile, LinearUnit, ReadReport, read_cloud, read_cloud_bytes, read_clouds};
+pub use cloud::{CloudFile, LinearUnit, ReadReport, read_cloud, read_cloud_bytes, read_clouds, write_cloud};
 pub use error::IoError;
 pub use format::{CloudFormat, MeshFormat};
 pub use mesh::{WriteOptions, WriteReport, read_mesh, read_mesh_bytes, write_mesh};

@@ -1,24 +1,27 @@
 //! Reading and writing point clouds.
 
 mod columns;
+mod e57;
 pub(crate) mod las;
+mod pcd;
 pub(crate) mod ply;
 mod report;
 pub(crate) mod text;
+mod write;
 
 use std::path::{Path, PathBuf};
 
 pub use report::{CloudFile, LinearUnit, ReadReport};
-use zeroset::cloud::{Attributes, Cloud};
+pub use write::write_cloud;
 
 use crate::input::read_file;
 use crate::{CloudFormat, IoError};
-pub(crate) use columns::{Columns, check_size};
+pub(crate) use columns::{Columns, check_size, class_from_value, colors_from_values};
 
 /// Reads a cloud; the suffix tells the format, `-` is text on standard input.
 ///
 /// Points whose coordinates are NaN or infinite are left out and counted, and so are points that a LAS file marks as
-/// withheld. Coordinates are f64 from the file to the [`Cloud`]; its offset follows
+/// withheld. Coordinates are f64 from the file to the [`Cloud`](zeroset::cloud::Cloud); its offset follows
 /// [`choose_offset`](zeroset::cloud::choose_offset).
 ///
 /// # Errors
@@ -77,23 +80,10 @@ fn world(path: &Path, format: CloudFormat, bytes: Vec<u8>) -> Result<report::Wor
         CloudFormat::Ply => ply::read(path, &bytes)?,
         CloudFormat::Xyz => text::read(path, &bytes, text::Convention::Plain)?,
         CloudFormat::Pts => text::read(path, &bytes, text::Convention::Pts)?,
-        CloudFormat::Pcd | CloudFormat::E57 => todo_format(path)?,
+        CloudFormat::Pcd => pcd::read(path, &bytes)?,
+        CloudFormat::E57 => e57::read(path, &bytes)?,
     };
     // The points are decoded: the file's bytes need not be there while they are sifted.
     drop(bytes);
     columns.finish(path, format)
 }
-
-fn todo_format(path: &Path) -> Result<Columns, IoError> {
-    Err(IoError::NotOffered { path: path.to_path_buf(), format: "this format", action: "read", remedy: "use LAZ" })
-}
-
-/// Checks what every writer of clouds relies on.
-pub(crate) fn check_cloud(path: &Path, points: &[[f64; 3]], attributes: &Attributes) -> Result<(), IoError> {
-    crate::mesh::check_points(path, "point", points)?;
-    crate::mesh::check_attributes(path, points.len(), attributes)
-}
-
-/// Writes a cloud in world coordinates; placeholder.
-#[doc(hidden)]
-pub fn write_cloud_placeholder(_: &Cloud) {}

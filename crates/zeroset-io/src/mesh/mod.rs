@@ -1,8 +1,13 @@
 //! Reading and writing triangle meshes.
 
+mod glb;
+mod obj;
+mod off;
 mod options;
 mod ply;
 mod polygons;
+mod stl;
+mod text;
 
 use std::path::Path;
 
@@ -10,6 +15,8 @@ use zeroset::cloud::{Attributes, choose_offset};
 use zeroset::mesh::Mesh;
 
 pub use options::{WriteOptions, WriteReport};
+pub(crate) use options::{one_line, tolerance, world};
+pub(crate) use ply::write_points as write_ply_points;
 pub(crate) use polygons::Polygons;
 
 use crate::input::read_file;
@@ -37,7 +44,10 @@ pub fn read_mesh_bytes(path: &Path, format: MeshFormat, bytes: &[u8]) -> Result<
     }
     let world = match format {
         MeshFormat::Ply => ply::read(path, bytes)?,
-        _ => return Err(IoError::NotOffered { path: path.into(), format: "this", action: "read", remedy: "use PLY" }),
+        MeshFormat::Obj => obj::read(path, bytes)?,
+        MeshFormat::Stl => stl::read(path, bytes)?,
+        MeshFormat::Off => off::read(path, bytes)?,
+        MeshFormat::Glb => glb::read(path, bytes)?,
     };
     finish(path, world)
 }
@@ -79,11 +89,44 @@ pub fn write_mesh(path: &Path, mesh: &Mesh, options: &WriteOptions) -> Result<Wr
     let mut report = WriteReport::default();
     report.bytes = match format {
         MeshFormat::Ply => write(&|sink| ply::write(sink, mesh, options))?,
-        _ => {
-            return Err(IoError::NotOffered { path: path.into(), format: "this", action: "written", remedy: "use PLY" });
+        MeshFormat::Obj => {
+            report.leave_out(mesh, &["colors"]);
+            write(&|sink| obj::write(sink, mesh, options))?
+        }
+        MeshFormat::Off => {
+            report.leave_out(mesh, &["colors"]);
+            write(&|sink| off::write(sink, mesh, options))?
+        }
+        MeshFormat::Stl => {
+            report.leave_out(mesh, &[]);
+            report.local_offset = Some(mesh.world_from_local);
+            check_stl(path, mesh)?;
+            write(&|sink| stl::write(sink, mesh))?
+        }
+        MeshFormat::Glb => {
+            report.local_offset = Some(mesh.world_from_local);
+            glb::check(path, mesh)?;
+            write(&|sink| glb::write(sink, mesh, options))?
         }
     };
     Ok(report)
+}
+
+fn check_stl(path: &Path, mesh: &Mesh) -> Result<(), IoError> {
+    if u32::try_from(mesh.triangles.len()).is_err() {
+        let what = format!("{} triangles are more than an STL file can count", mesh.triangles.len());
+        return Err(IoError::malformed(path, what, "write PLY"));
+    }
+    Ok(())
+}
+
+/// Colours from shares of full brightness, 0 to 1.
+fn shares_to_colors(values: &[[f32; 3]]) -> Vec<[u8; 3]> {
+    // Some programs write 0 to 255 nevertheless.
+    if values.iter().flatten().any(|v| *v > 1.0) {
+        return crate::cloud::colors_from_values(values);
+    }
+    values.iter().map(|color| color.map(|c| (255.0 * c).round() as u8)).collect()
 }
 
 fn check_mesh(path: &Path, mesh: &Mesh) -> Result<(), IoError> {

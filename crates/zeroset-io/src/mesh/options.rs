@@ -41,26 +41,28 @@ const SHARE_OF_RESOLUTION: f64 = 1e-4;
 /// A resolution for those who state none, relative to the longest side of the box.
 const SHARE_OF_BOX: f64 = 1e-2;
 
-impl WriteOptions {
-    /// How far rounding may move a coordinate.
-    pub(crate) fn tolerance(&self, points: &[[f64; 3]]) -> f64 {
-        let stated = self.resolution.filter(|r| r.is_finite() && *r > 0.0);
-        let resolution = stated.unwrap_or_else(|| SHARE_OF_BOX * longest_side(points));
-        let tolerance = (SHARE_OF_RESOLUTION * resolution).min(MOST);
-        // A single point, or none: any number of digits is enough.
-        if tolerance > 0.0 { tolerance } else { MOST }
-    }
+/// How far rounding may move a coordinate.
+pub(crate) fn tolerance(options: &WriteOptions, points: &[[f64; 3]]) -> f64 {
+    let stated = options.resolution.filter(|r| r.is_finite() && *r > 0.0);
+    let resolution = stated.unwrap_or_else(|| SHARE_OF_BOX * longest_side(points));
+    let tolerance = (SHARE_OF_RESOLUTION * resolution).min(MOST);
+    // A single point, or none: any number of digits is enough.
+    if tolerance > 0.0 { tolerance } else { MOST }
+}
 
+/// A text without line ends and other control characters.
+pub(crate) fn one_line(text: &str) -> String {
+    text.split(char::is_control).map(str::trim).collect::<Vec<_>>().join(" ").trim().to_string()
+}
+
+impl WriteOptions {
     /// Every comment, each on one line of printable text.
     pub(crate) fn comment_lines(&self, crs: Option<&str>) -> Vec<String> {
         let mut lines = vec![format!("generator {}", self.generator)];
         lines.extend(crs.map(|crs| format!("crs {crs}")));
         lines.extend(self.unit.map(|unit| format!("unit {}", unit.name())));
         lines.extend(self.comments.iter().cloned());
-        for line in &mut lines {
-            *line = line.split(char::is_control).map(str::trim).collect::<Vec<_>>().join(" ").trim().to_string();
-        }
-        lines
+        lines.iter().map(|line| one_line(line)).collect()
     }
 }
 

@@ -5,7 +5,7 @@ use std::path::Path;
 use zeroset::mesh::Mesh;
 
 use super::Polygons;
-use super::options::{WriteOptions, single_holds, world};
+use super::options::{WriteOptions, single_holds, tolerance, world};
 use crate::IoError;
 use crate::cloud::ply::vertices;
 use crate::output::Sink;
@@ -31,7 +31,6 @@ pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<Mesh, IoError> {
             }
             ("face", Some(corners)) => {
                 let count = body.checked_count(element, "faces")?;
-                let known = mesh.as_ref().map_or(0, |mesh| mesh.vertices.len());
                 let mut values = Vec::new();
                 for i in 0..count {
                     body.record(element, i, "faces", &mut values, &mut |property, value| {
@@ -39,7 +38,7 @@ pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<Mesh, IoError> {
                             polygons.corner(value as i64);
                         }
                     })?;
-                    polygons.close(path, known)?;
+                    polygons.close();
                 }
             }
             _ => body.skip(element)?,
@@ -48,7 +47,8 @@ pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<Mesh, IoError> {
     let mesh = mesh.ok_or_else(|| {
         IoError::malformed(path, "the PLY header has no `vertex` element", "export a mesh with vertices and faces")
     })?;
-    Ok(Mesh { triangles: polygons.into_triangles(), ..mesh })
+    let triangles = polygons.into_triangles(path, mesh.vertices.len())?;
+    Ok(Mesh { triangles, ..mesh })
 }
 
 /// Vertices and triangles that are gathered before they go out.
@@ -75,7 +75,7 @@ pub(super) fn write(sink: &mut dyn Sink, mesh: &Mesh, options: &WriteOptions) ->
 
 /// Whether coordinates are single precision.
 fn write_vertices_header(sink: &mut dyn Sink, mesh: &Mesh, options: &WriteOptions) -> std::io::Result<bool> {
-    let single = single_holds(&mesh.vertices, mesh.world_from_local, options.tolerance(&mesh.vertices));
+    let single = single_holds(&mesh.vertices, mesh.world_from_local, tolerance(options, &mesh.vertices));
     let kind = if single { "float" } else { "double" };
     writeln!(sink, "ply\nformat binary_little_endian 1.0")?;
     for line in options.comment_lines(mesh.crs.as_deref()) {

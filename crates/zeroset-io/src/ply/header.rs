@@ -149,7 +149,7 @@ impl Header {
     pub(crate) fn parse(path: &Path, bytes: &[u8]) -> Result<Self, IoError> {
         let bad = |line: usize, what: &str| IoError::damaged(path, format!("line {line} of the PLY header {what}"));
         let mut lines = Lines { bytes, position: 0 };
-        if !lines.next().is_some_and(|line| line.trim_ascii() == b"ply") {
+        if lines.next().is_none_or(|line| line.trim_ascii() != b"ply") {
             // A strict prefix of the magic word is a file cut short, not another format.
             if b"ply\n".starts_with(bytes) {
                 return Err(IoError::truncated(path, "header", 4, bytes.len() as u64));

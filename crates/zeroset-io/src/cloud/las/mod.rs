@@ -8,6 +8,7 @@ mod crs;
 mod header;
 mod laz;
 mod points;
+mod write;
 
 use std::path::Path;
 
@@ -15,6 +16,7 @@ use super::Columns;
 use crate::{CloudFormat, IoError};
 use header::Header;
 use points::{Record, Table};
+pub(crate) use write::encode;
 
 pub(crate) fn read(path: &Path, format: CloudFormat, bytes: &[u8]) -> Result<Columns, IoError> {
     let header = Header::parse(path, format.name(), bytes)?;
