@@ -14,8 +14,10 @@ pub enum CloudFormat {
     Laz,
     /// Stanford polygon file; only its vertices are read.
     Ply,
-    /// Text, a point a line: `.xyz`, `.txt`, `.csv`, `.asc`.
+    /// Text, a point a line, with spaces between the values: `.xyz`, `.txt`, `.asc`.
     Xyz,
+    /// The same with commas, and with a line of names at the top. Any separator is read from either.
+    Csv,
     /// Leica's text format: a line with the count, then x y z, intensity, red, green, blue.
     Pts,
     /// Point Cloud Library's format.
@@ -48,7 +50,7 @@ impl CloudFormat {
         ("ply", Self::Ply),
         ("xyz", Self::Xyz),
         ("txt", Self::Xyz),
-        ("csv", Self::Xyz),
+        ("csv", Self::Csv),
         ("asc", Self::Xyz),
         ("pts", Self::Pts),
         ("pcd", Self::Pcd),
@@ -74,6 +76,7 @@ impl CloudFormat {
             Self::Laz => "LAZ",
             Self::Ply => "PLY",
             Self::Xyz => "XYZ text",
+            Self::Csv => "CSV text",
             Self::Pts => "PTS text",
             Self::Pcd => "PCD",
             Self::E57 => "E57",

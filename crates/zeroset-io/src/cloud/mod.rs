@@ -78,7 +78,7 @@ fn world(path: &Path, format: CloudFormat, bytes: Vec<u8>) -> Result<report::Wor
     let columns = match format {
         CloudFormat::Las | CloudFormat::Laz => las::read(path, format, &bytes)?,
         CloudFormat::Ply => ply::read(path, &bytes)?,
-        CloudFormat::Xyz => text::read(path, &bytes, text::Convention::Plain)?,
+        CloudFormat::Xyz | CloudFormat::Csv => text::read(path, &bytes, text::Convention::Plain)?,
         CloudFormat::Pts => text::read(path, &bytes, text::Convention::Pts)?,
         CloudFormat::Pcd => pcd::read(path, &bytes)?,
         CloudFormat::E57 => e57::read(path, &bytes)?,

@@ -17,7 +17,8 @@ use crate::{CloudFormat, IoError};
 /// | format | coordinates | attributes |
 /// |---|---|---|
 /// | PLY | float or double by [`WriteOptions::resolution`] | colours, intensity, class |
-/// | XYZ, TXT, CSV, ASC | as many digits as it takes | all, named in a comment line at the top |
+/// | XYZ, TXT, ASC | as many digits as it takes | all, named in a comment line at the top |
+/// | CSV | likewise | all, named in the first line |
 /// | PTS | likewise | intensity and colours |
 /// | LAS, LAZ | whole multiples of 0.001, or of a smaller power of ten if the resolution asks for it | colours and intensity in 16 bits, class |
 ///
@@ -38,7 +39,7 @@ pub fn write_cloud(path: &Path, cloud: &Cloud, options: &WriteOptions) -> Result
     }
     let write = |fill: &dyn Fn(&mut dyn Sink) -> std::io::Result<()>| write_file(path, |sink| fill(sink));
     report.bytes = match format {
-        CloudFormat::Xyz => write(&|sink| write_text(sink, cloud, options, format))?,
+        CloudFormat::Xyz | CloudFormat::Csv => write(&|sink| write_text(sink, cloud, options, format))?,
         CloudFormat::Pts => {
             if cloud.attributes.classes.is_some() {
                 report.attributes_left_out.push("classes");
@@ -78,25 +79,23 @@ fn write_text(out: &mut dyn Write, cloud: &Cloud, options: &WriteOptions, format
     let decimals = decimals_for(tolerance(options, &cloud.points));
     let attributes = &cloud.attributes;
     let (colors, intensities) = (attributes.colors.as_deref(), attributes.intensities.as_deref());
-    let pts = format == CloudFormat::Pts;
-    let classes = attributes.classes.as_deref().filter(|_| !pts);
-    if pts {
-        writeln!(out, "{}", cloud.points.len())?;
-    } else {
-        if let Some(crs) = &cloud.crs {
-            writeln!(out, "# crs {}", crate::mesh::one_line(crs))?;
-        }
-        // Bare coordinates need no names, and are what every program reads.
-        if colors.is_some() || intensities.is_some() || classes.is_some() {
-            let mut names = String::from("# x y z");
-            for (name, present) in [
-                (" intensity", intensities.is_some()),
-                (" red green blue", colors.is_some()),
-                (" classification", classes.is_some()),
-            ] {
-                names.push_str(if present { name } else { "" });
+    let classes = attributes.classes.as_deref().filter(|_| format != CloudFormat::Pts);
+    let separator = if format == CloudFormat::Csv { b',' } else { b' ' };
+    let mut names = vec!["x", "y", "z"];
+    names.extend(intensities.map(|_| "intensity"));
+    names.extend(colors.iter().flat_map(|_| ["red", "green", "blue"]));
+    names.extend(classes.map(|_| "classification"));
+    match format {
+        CloudFormat::Pts => writeln!(out, "{}", cloud.points.len())?,
+        CloudFormat::Csv => writeln!(out, "{}", names.join(","))?,
+        _ => {
+            if let Some(crs) = &cloud.crs {
+                writeln!(out, "# crs {}", crate::mesh::one_line(crs))?;
             }
-            writeln!(out, "{names}")?;
+            // Bare coordinates need no names, and are what every program reads.
+            if names.len() > 3 {
+                writeln!(out, "# {}", names.join(" "))?;
+            }
         }
     }
     let mut run = Vec::with_capacity(64 * RUN);
@@ -105,21 +104,22 @@ fn write_text(out: &mut dyn Write, cloud: &Cloud, options: &WriteOptions, format
         for (i, point) in (start * RUN..).zip(points) {
             for (axis, coordinate) in world(*point, cloud.world_from_local).into_iter().enumerate() {
                 if axis > 0 {
-                    run.push(b' ');
+                    run.push(separator);
                 }
                 push_fixed(&mut run, coordinate, decimals);
             }
             if let Some(intensities) = intensities {
-                write!(run, " {}", intensities[i])?;
+                run.push(separator);
+                write!(run, "{}", intensities[i])?;
             }
             if let Some(colors) = colors {
                 for channel in colors[i] {
-                    run.push(b' ');
+                    run.push(separator);
                     push_integer(&mut run, u64::from(channel));
                 }
             }
             if let Some(classes) = classes {
-                run.push(b' ');
+                run.push(separator);
                 push_integer(&mut run, u64::from(classes[i]));
             }
             run.push(b'\n');

@@ -68,6 +68,8 @@ pub(super) struct Prelude {
     pub(super) lines: u64,
     /// The count that a PTS file starts with.
     pub(super) declared: Option<u64>,
+    /// From a comment `crs ...`, as the writer here leaves it.
+    pub(super) crs: Option<String>,
     pub(super) notes: Vec<String>,
 }
 
@@ -76,7 +78,7 @@ const MOST_HEADER_LINES: u64 = 64;
 
 impl Prelude {
     pub(super) fn scan(path: &Path, text: &[u8], line_end: u8, convention: Convention) -> Result<Self, IoError> {
-        let (mut skip, mut lines, mut declared, mut notes) = (0, 0, None, Vec::new());
+        let (mut skip, mut lines, mut declared, mut crs, mut notes) = (0, 0, None, None, Vec::new());
         let (mut names, mut words): (Option<Vec<String>>, u64) = (None, 0);
         let mut first_words = None;
         while skip < text.len() {
@@ -86,11 +88,15 @@ impl Prelude {
             let tokens: Vec<&[u8]> = Tokens::new(line).take(256).collect();
             if line.is_empty() || is_comment(line) {
                 // A comment that names the columns is a header all the same.
-                let found = names_of(Tokens::new(uncommented(line)).take(256));
+                let comment = uncommented(line);
+                if let Some(text) = comment.strip_prefix(b"crs ") {
+                    crs = crs.or_else(|| Some(String::from_utf8_lossy(text).trim().to_string()));
+                }
+                let found = names_of(Tokens::new(comment).take(256));
                 if Layout::from_names(&found).is_some() {
                     names = Some(found);
                 }
-            } else if tokens.len() == 1 && names.is_none() && declared.is_none() && is_count(tokens[0]) {
+            } else if tokens.len() == 1 && declared.is_none() && is_count(tokens[0]) {
                 declared = parse_count(tokens[0]);
                 if convention == Convention::Plain {
                     notes.push(format!("line {} holds one number, taken as the count of points", lines + 1));
@@ -101,7 +107,7 @@ impl Prelude {
                     &tokens,
                     names,
                     convention,
-                    Self { layout: Layout::by_convention(convention, tokens.len()), skip, lines, declared, notes },
+                    Self { layout: Layout::by_convention(convention, tokens.len()), skip, lines, declared, crs, notes },
                 );
             } else {
                 // Words: a header, or no text of points at all.

@@ -33,7 +33,7 @@ pub(crate) fn read(path: &Path, bytes: &[u8], convention: Convention) -> Result<
     // Files of old systems end lines with CR alone; with any LF about, a CR is just space at the end of a line.
     let line_end = if text.contains(&b'\n') || !text.contains(&b'\r') { b'\n' } else { b'\r' };
 
-    let Prelude { layout, skip, lines, declared, notes } = Prelude::scan(path, text, line_end, convention)?;
+    let Prelude { layout, skip, lines, declared, crs, notes } = Prelude::scan(path, text, line_end, convention)?;
     let pieces = cut(&text[skip..], line_end);
     let blocks: Vec<Result<Block, Problem>> =
         pieces.par_iter().map(|piece| parse_block(piece, line_end, &layout, convention)).collect();
@@ -58,7 +58,7 @@ pub(crate) fn read(path: &Path, bytes: &[u8], convention: Convention) -> Result<
     if let Some(declared) = declared.filter(|declared| *declared > found) {
         return Err(IoError::CountMismatch { path: path.to_path_buf(), items: "points", declared, found });
     }
-    Ok(Columns { declared, notes, ..columns })
+    Ok(Columns { declared, crs, notes, ..columns })
 }
 
 /// Pieces of whole lines.
