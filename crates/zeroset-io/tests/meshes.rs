@@ -197,6 +197,21 @@ fn stl_in_text_is_joined() {
 }
 
 #[test]
+fn stl_corners_that_differ_by_rounding_are_joined() {
+    let facet =
+        |corners: [&str; 3]| format!("facet\nouter loop\nvertex {}\nendloop\nendfacet\n", corners.join("\nvertex "));
+    let text = format!(
+        "solid\n{}{}endsolid\n",
+        facet(["0 0 -2.7e-16", "1 0 0.5", "1 1 0.001"]),
+        facet(["0 2.7e-16 0", "1 1 0.0010001", "0 1 0"])
+    );
+    let mesh = read("a.stl", &text).unwrap();
+    // The third corner of the first is apart from the second of the second, if only by a ten-millionth.
+    assert_eq!(mesh.triangles, [[0, 1, 2], [0, 3, 4]]);
+    assert_eq!(mesh.vertices[0], [0.0, 0.0, -2.7e-16]);
+}
+
+#[test]
 fn a_binary_stl_may_start_with_solid() {
     let mut bytes = common::sound_mesh(MeshFormat::Stl);
     bytes[..6].copy_from_slice(b"solid ");

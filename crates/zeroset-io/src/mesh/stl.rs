@@ -1,7 +1,9 @@
 //! Stereolithography: loose triangles, in binary or text.
 //!
-//! Corners with exactly the same coordinates become one vertex, and triangles with two equal corners are passed over.
-//! Normals are not read: the order of the corners says the same.
+//! Corners with the same coordinates become one vertex, and triangles with two equal corners are passed over. The same
+//! are coordinates that single precision could not tell apart at the largest coordinate of that axis: programs write
+//! zeros as -2.7e-16 here and as 0 there. Everything else stays apart, and no vertex moves. Normals are not read: the
+//! order of the corners says the same.
 
 use std::path::Path;
 
@@ -41,21 +43,20 @@ pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<Mesh, IoError> {
         let found = body / TRIANGLE as u64;
         return Err(IoError::CountMismatch { path: path.to_path_buf(), items: "triangles", declared: count, found });
     }
-    let mut welder = Welder::default();
-    for triangle in bytes[HEADER..].chunks_exact(TRIANGLE).take(count as usize) {
-        let corner = |c: usize| {
+    let records = bytes[HEADER..].chunks_exact(TRIANGLE).take(count as usize);
+    let triangles = records.map(|record| {
+        std::array::from_fn(|corner| {
             std::array::from_fn(|axis| {
-                let at = 12 + 12 * c + 4 * axis;
-                f64::from(f32::from_le_bytes([triangle[at], triangle[at + 1], triangle[at + 2], triangle[at + 3]]))
+                let at = 12 + 12 * corner + 4 * axis;
+                f64::from(f32::from_le_bytes([record[at], record[at + 1], record[at + 2], record[at + 3]]))
             })
-        };
-        welder.triangle([corner(0), corner(1), corner(2)]);
-    }
-    Ok(welder.mesh)
+        })
+    });
+    Ok(weld(&triangles.collect::<Vec<_>>()))
 }
 
 fn read_text(path: &Path, text: &[u8]) -> Result<Mesh, IoError> {
-    let mut welder = Welder::default();
+    let mut triangles = Vec::new();
     let (mut corners, mut last) = (Vec::with_capacity(3), 0);
     for (at, line) in lines(text) {
         last = at;
@@ -71,7 +72,7 @@ fn read_text(path: &Path, text: &[u8]) -> Result<Mesh, IoError> {
                     let what = format!("line {at}: a facet has {} corners", corners.len());
                     return Err(IoError::damaged(path, what));
                 };
-                welder.triangle([a, b, c]);
+                triangles.push([a, b, c]);
                 corners.clear();
             }
             _ => {}
@@ -80,34 +81,39 @@ fn read_text(path: &Path, text: &[u8]) -> Result<Mesh, IoError> {
     if !corners.is_empty() {
         return Err(IoError::damaged(path, format!("the text ends in line {last}, within a facet")));
     }
-    Ok(welder.mesh)
+    Ok(weld(&triangles))
 }
 
-/// Joins corners with equal coordinates; vertices are in the order of their first use.
-#[derive(Default)]
-struct Welder {
-    mesh: Mesh,
-    known: FxHashMap<[u64; 3], u32>,
-}
-
-impl Welder {
-    fn triangle(&mut self, corners: [[f64; 3]; 3]) {
-        let [a, b, c] = corners.map(|corner| self.vertex(corner));
+/// Joins equal corners; vertices are in the order of their first use.
+fn weld(triangles: &[[[f64; 3]; 3]]) -> Mesh {
+    let mut largest = [0.0_f64; 3];
+    for corner in triangles.iter().flatten() {
+        for axis in 0..3 {
+            largest[axis] = largest[axis].max(corner[axis].abs());
+        }
+    }
+    // A quarter of the distance of neighbouring f32 numbers at the largest coordinate.
+    let cells_per_unit = largest.map(|largest| if largest > 0.0 { 2_f64.powi(26) / largest } else { 1.0 });
+    let mut mesh = Mesh::default();
+    let mut known: FxHashMap<[u64; 3], u32> = FxHashMap::default();
+    known.reserve(triangles.len() / 2);
+    mesh.triangles.reserve(triangles.len());
+    for corners in triangles {
+        let [a, b, c] = corners.map(|position| {
+            // Adding zero makes -0 and 0 the same. Not a cast: NaN must not become a place.
+            let key = std::array::from_fn(|axis| ((position[axis] * cells_per_unit[axis]).round() + 0.0).to_bits());
+            let next = mesh.vertices.len() as u32;
+            let index = *known.entry(key).or_insert(next);
+            if index == next {
+                mesh.vertices.push(position.map(|c| c + 0.0));
+            }
+            index
+        });
         if a != b && b != c && c != a {
-            self.mesh.triangles.push([a, b, c]);
+            mesh.triangles.push([a, b, c]);
         }
     }
-
-    fn vertex(&mut self, position: [f64; 3]) -> u32 {
-        // Adding zero makes -0 and 0 the same.
-        let position = position.map(|c| c + 0.0);
-        let next = self.mesh.vertices.len() as u32;
-        let index = *self.known.entry(position.map(f64::to_bits)).or_insert(next);
-        if index == next {
-            self.mesh.vertices.push(position);
-        }
-        index
-    }
+    mesh
 }
 
 /// Writes local coordinates in binary.
