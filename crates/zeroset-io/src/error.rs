@@ -194,7 +194,7 @@ pub enum IoError {
         /// Points or vertices given.
         points: usize,
     },
-    /// Inputs that should become one cloud state different reference systems.
+    /// A list of files to read is empty.
     #[error("no input file was given; name at least one point cloud")]
     NoInput,
     /// The folder to write to does not exist.

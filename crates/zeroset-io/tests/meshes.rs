@@ -351,3 +351,43 @@ fn glb_scenes_that_multiply_are_refused() {
     json["accessors"][0]["count"] = 5_000_000_000_u64.into();
     assert!(read("a.glb", glb(json, binary)).is_err());
 }
+
+#[test]
+fn ply_faces_of_every_index_type_and_byte_order() {
+    for (kind, size, signed) in [("int", 4, true), ("uint", 4, false), ("short", 2, true), ("uchar", 1, false)] {
+        for big in [false, true] {
+            let order = if big { "big" } else { "little" };
+            let head = |faces: usize| {
+                format!(
+                    "ply\nformat binary_{order}_endian 1.0\nelement vertex 4\nproperty float x\nproperty float y\n\
+                     property float z\nelement face {faces}\nproperty list uchar {kind} vertex_indices\nend_header\n"
+                )
+            };
+            let number = |value: i32| {
+                let mut bytes = value.to_le_bytes()[..size].to_vec();
+                if big {
+                    bytes.reverse();
+                }
+                bytes
+            };
+            let mut body = Vec::new();
+            for c in SQUARE.iter().flatten() {
+                let c = *c as f32;
+                body.extend(if big { c.to_be_bytes() } else { c.to_le_bytes() });
+            }
+            let vertices = body.clone();
+            for list in [&[0, 1, 2, 3][..], &[], &[0, 1], &[3, 2, 1]] {
+                body.push(list.len() as u8);
+                body.extend(list.iter().flat_map(|i| number(*i)));
+            }
+            let mesh = read("a.ply", [head(4).as_bytes(), &body].concat()).unwrap();
+            assert_eq!(mesh.vertices, SQUARE);
+            assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3], [3, 2, 1]]);
+            let short = read("a.ply", [head(4).as_bytes(), &body[..body.len() - 1]].concat()).unwrap_err();
+            assert!(matches!(short, IoError::CountMismatch { declared: 4, found: 3, .. }), "{short}");
+            let negative = [&vertices[..], &[3], &number(0), &number(1), &number(-1)].concat();
+            let error = read("a.ply", [head(1).as_bytes(), &negative].concat()).unwrap_err();
+            assert!(matches!(error, IoError::BadIndex { vertex, .. } if (vertex == -1) == signed), "{error}");
+        }
+    }
+}

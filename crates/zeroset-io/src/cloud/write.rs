@@ -22,7 +22,8 @@ use crate::{CloudFormat, IoError};
 /// | PTS | likewise | intensity and colours |
 /// | LAS, LAZ | whole multiples of 0.001, or of a smaller power of ten if the resolution asks for it | colours and intensity in 16 bits, class |
 ///
-/// Intensities from 0 to 1 that have fractions are stretched to 16 bits in LAS.
+/// LAS holds intensities as whole numbers from 0 to 65535: shares from 0 to 1 are stretched to that, other values are
+/// rounded and cut.
 ///
 /// # Errors
 /// A coordinate is not finite, an attribute has another length than the points, or the file cannot be written.

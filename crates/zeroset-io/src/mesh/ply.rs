@@ -9,7 +9,7 @@ use super::options::{WriteOptions, single_holds, tolerance, world};
 use crate::IoError;
 use crate::cloud::ply::vertices;
 use crate::output::Sink;
-use crate::ply::body::Body;
+use crate::ply::body::{Body, ListSink};
 use crate::ply::header::{Header, Property};
 
 /// Reads in world coordinates.
@@ -31,14 +31,16 @@ pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<Mesh, IoError> {
             }
             ("face", Some(corners)) => {
                 let count = body.checked_count(element, "faces")?;
-                let mut values = Vec::new();
-                for i in 0..count {
-                    body.record(element, i, "faces", &mut values, &mut |property, value| {
-                        if property == corners {
-                            polygons.corner(value as i64);
-                        }
-                    })?;
-                    polygons.close();
+                if !body.byte_counted_lists(element, count, "faces", &mut polygons)? {
+                    let mut values = Vec::new();
+                    for i in 0..count {
+                        body.record(element, i, "faces", &mut values, &mut |property, value| {
+                            if property == corners {
+                                polygons.corner(value as i64);
+                            }
+                        })?;
+                        polygons.close();
+                    }
                 }
             }
             _ => body.skip(element)?,
@@ -49,6 +51,16 @@ pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<Mesh, IoError> {
     })?;
     let triangles = polygons.into_triangles(path, mesh.vertices.len())?;
     Ok(Mesh { triangles, ..mesh })
+}
+
+impl ListSink for Polygons {
+    fn item(&mut self, value: i64) {
+        self.corner(value);
+    }
+
+    fn end(&mut self) {
+        self.close();
+    }
 }
 
 /// Vertices and triangles that are gathered before they go out.
