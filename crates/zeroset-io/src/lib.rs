@@ -1,1 +1,48 @@
 //! Point cloud and mesh formats for `zeroset`.
+//!
+//! | | read | written |
+//! |---|---|---|
+//! | clouds | LAS, LAZ (COPC too), PLY, XYZ / TXT / CSV / ASC, PTS, PCD, E57 | LAS, LAZ, PLY, XYZ / TXT / CSV / ASC, PTS |
+//! | meshes | PLY, OBJ, STL, OFF, GLB | PLY, OBJ, STL, OFF, GLB |
+//!
+//! ```no_run
+//! use std::path::Path;
+//! let file = zeroset_io::read_cloud(Path::new("tile.laz"))?;
+//! println!("{} points in {:?}", file.cloud.len(), file.report.unit);
+//! # Ok::<(), zeroset_io::IoError>(())
+//! ```
+//!
+//! # Guaranteed
+//! - Coordinates pass from a file to the cloud as f64, and the offset is taken off before anything is rounded: the
+//!   millimetres of national grids survive.
+//! - Equal files give equal clouds, bit for bit, on any number of threads.
+//! - Memory is bounded by a small multiple of a file's true size, whatever counts it states, and no content makes a
+//!   reader panic.
+//! - Every error is one line that names the file and the remedy.
+//! - A file is written completely or not at all: see [`write_atomically`].
+//!
+//! # Not guaranteed
+//! - Coordinates are not transformed between reference systems, nor between units.
+//! - GPS time, return numbers, normals and extra columns are not kept.
+
+pub mod cloud;
+mod error;
+mod format;
+mod guard;
+mod input;
+pub mod mesh;
+mod number;
+mod output;
+mod ply;
+
+pub use cloud::{CloudFile, LinearUnit, ReadReport, read_cloud, read_cloud_bytes, read_clouds, write_cloud};
+pub use error::IoError;
+pub use format::{CloudFormat, MeshFormat};
+pub use mesh::{WriteOptions, WriteReport, read_mesh, read_mesh_bytes, write_mesh};
+pub use output::{abandon_writes, write_atomically};
+
+/// The largest coordinate that is read or written, in the unit of the file.
+///
+/// National grids reach 10^7 m, which is 10^10 mm. Beyond 10^11 a coordinate is a mistake or a mark for "no data", and
+/// f64 would resolve it to no more than 0.015 mm even if it were metres.
+pub const MAX_COORDINATE: f64 = 1e11;

@@ -1,0 +1,162 @@
+//! What was read, and what there is to say about it.
+
+use std::path::Path;
+
+use zeroset::cloud::{Attributes, Cloud};
+
+use crate::CloudFormat;
+
+/// The unit of coordinates.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum LinearUnit {
+    /// Metres.
+    Metre,
+    /// International feet, 0.3048 m.
+    Foot,
+    /// US survey feet, 1200 / 3937 m.
+    UsSurveyFoot,
+}
+
+impl LinearUnit {
+    /// Length of the unit in metres.
+    #[must_use]
+    pub fn metres(self) -> f64 {
+        match self {
+            Self::Metre => 1.0,
+            Self::Foot => 0.3048,
+            Self::UsSurveyFoot => 1200.0 / 3937.0,
+        }
+    }
+
+    /// The name that messages and file comments use.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Metre => "metre",
+            Self::Foot => "foot",
+            Self::UsSurveyFoot => "US survey foot",
+        }
+    }
+
+    /// The unit of a given [`name`](Self::name).
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        [Self::Metre, Self::Foot, Self::UsSurveyFoot].into_iter().find(|unit| unit.name() == name)
+    }
+
+    /// The unit of a given length in metres. The two feet differ by 2e-6, files give at least seven digits.
+    pub(crate) fn from_metres(metres: f64) -> Option<Self> {
+        let near = |unit: &Self| (unit.metres() - metres).abs() < 1e-7 * metres;
+        [Self::Metre, Self::Foot, Self::UsSurveyFoot].into_iter().find(near)
+    }
+}
+
+/// What reading a cloud found out.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct ReadReport {
+    /// The format; of the first input if there were several.
+    pub format: CloudFormat,
+    /// How many files were read.
+    pub inputs: usize,
+    /// How many points the files state, where they do.
+    pub points_declared: Option<u64>,
+    /// How many points the cloud has.
+    pub points_read: u64,
+    /// Points left out because a coordinate was NaN or infinite, or because the scanner marked the point as invalid.
+    pub non_finite: u64,
+    /// Points left out because a LAS file marks them as withheld, that is, deleted.
+    pub withheld: u64,
+    /// The unit of the coordinates, where the file tells.
+    pub unit: Option<LinearUnit>,
+    /// The coordinate reference system as the file states it.
+    pub crs: Option<String>,
+    /// What else the file tells about its origin, as name and value: software, scanner, date, version and so on.
+    pub facts: Vec<(&'static str, String)>,
+    /// Attributes that some inputs have and others do not.
+    pub attributes_left_out: Vec<&'static str>,
+    /// Sentences about what a user may want to know: columns passed over, conflicts between inputs.
+    pub notes: Vec<String>,
+}
+
+/// A cloud and what reading it found out.
+#[derive(Debug, Clone)]
+pub struct CloudFile {
+    /// The points.
+    pub cloud: Cloud,
+    /// What reading found out.
+    pub report: ReadReport,
+}
+
+/// A cloud before the offset is taken off, so that several can be joined without rounding twice.
+#[derive(Debug)]
+pub(crate) struct WorldCloud {
+    pub(crate) points: Vec<[f64; 3]>,
+    pub(crate) attributes: Attributes,
+    pub(crate) crs: Option<String>,
+    pub(crate) report: ReadReport,
+}
+
+impl WorldCloud {
+    pub(crate) fn into_file(self) -> CloudFile {
+        let cloud = Cloud { attributes: self.attributes, crs: self.crs, ..Cloud::from_world(self.points) };
+        CloudFile { cloud, report: self.report }
+    }
+
+    pub(crate) fn append(&mut self, path: &Path, next: Self) {
+        let left_out = &mut self.report.attributes_left_out;
+        join(&mut self.attributes.colors, next.attributes.colors, "colors", left_out);
+        join(&mut self.attributes.intensities, next.attributes.intensities, "intensities", left_out);
+        join(&mut self.attributes.classes, next.attributes.classes, "classes", left_out);
+        self.points.extend_from_slice(&next.points);
+
+        let (report, other) = (&mut self.report, next.report);
+        let name = crate::error::clean(&path.display().to_string());
+        match (&self.crs, next.crs) {
+            (None, Some(crs)) => {
+                report.notes.push(format!("{name} states a reference system, files before it state none"));
+                report.crs = Some(crs.clone());
+                self.crs = Some(crs);
+            }
+            (Some(_), None) => report.notes.push(format!("{name} states no reference system, files before it do")),
+            (Some(first), Some(crs)) if *first != crs => report.notes.push(format!(
+                "{name} states another reference system than the files before it; coordinates are taken as they are"
+            )),
+            _ => {}
+        }
+        match (report.unit, other.unit) {
+            (Some(first), Some(unit)) if first != unit => report.notes.push(format!(
+                "{name} is in the unit {}, the files before it in the unit {}; lengths are taken as they are",
+                unit.name(),
+                first.name()
+            )),
+            (first, unit) => report.unit = first.or(unit),
+        }
+        report.inputs += other.inputs;
+        // A total is only stated if every input states its part.
+        report.points_declared = report.points_declared.zip(other.points_declared).map(|(a, b)| a.saturating_add(b));
+        report.points_read += other.points_read;
+        report.non_finite += other.non_finite;
+        report.withheld += other.withheld;
+        for fact in other.facts {
+            if !report.facts.contains(&fact) {
+                report.facts.push(fact);
+            }
+        }
+        report.notes.extend(other.notes.into_iter().map(|note| format!("{name}: {note}")));
+    }
+}
+
+fn join<T>(all: &mut Option<Vec<T>>, next: Option<Vec<T>>, name: &'static str, left_out: &mut Vec<&'static str>) {
+    match (all.as_mut(), next) {
+        (Some(values), Some(next)) => values.extend(next),
+        (None, None) => {}
+        _ => {
+            *all = None;
+            if !left_out.contains(&name) {
+                left_out.push(name);
+            }
+        }
+    }
+}

@@ -1,0 +1,40 @@
+//! Seeds for the fuzz targets: `ZEROSET_SEEDS=fuzz/corpus cargo test -p zeroset-io --test fuzz_seeds`.
+
+mod common;
+
+use std::path::PathBuf;
+
+use zeroset_io::{CloudFormat, MeshFormat};
+
+#[test]
+fn write_seeds() {
+    let Some(folder) = std::env::var_os("ZEROSET_SEEDS").map(PathBuf::from) else {
+        println!("skipped: ZEROSET_SEEDS names no folder");
+        return;
+    };
+    let write = |target: String, name: &str, bytes: Vec<u8>| {
+        std::fs::create_dir_all(folder.join(&target)).unwrap();
+        std::fs::write(folder.join(target).join(name), bytes).unwrap();
+    };
+    for (suffix, format) in CloudFormat::KNOWN {
+        write(format!("cloud_{suffix}"), "sound", common::sound_cloud(*format));
+    }
+    write("cloud_pcd".into(), "ascii", common::pcd_ascii());
+    write("cloud_pcd".into(), "compressed", common::pcd_compressed());
+    let named = "x,y,z,red,green,blue,intensity,class\n1,2,3,4,5,6,7,8\n";
+    write("cloud_xyz".into(), "named", named.into());
+    let ply = "ply\nformat ascii 1.0\nelement vertex 3\nproperty list uchar int l\nproperty double x\nproperty float y\n\
+        property int z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n\
+        1 5 0 0 0\n0 1 0 0\n2 1 2 0 1 0\n3 0 1 2\n";
+    for target in ["cloud_ply", "mesh_ply"] {
+        write(target.into(), "ascii", ply.into());
+        write(target.into(), "big", common::sound_mesh(MeshFormat::Ply));
+    }
+    for (suffix, format) in MeshFormat::KNOWN {
+        write(format!("mesh_{suffix}"), "sound", common::sound_mesh(*format));
+    }
+    let stl = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n";
+    write("mesh_stl".into(), "text", stl.into());
+    write("mesh_obj".into(), "forms", "v 0 0 0 1 0 0\nv 1 0 0\nv 0 1 0\nf 1/1/1 2//2 -1\nf 1 2 \\\n3\n".into());
+    write("mesh_off".into(), "color", "COFF\n3 1 0\n0 0 0 1 0 0 1\n1 0 0 0 1 0 1\n0 1 0 0 0 1 1\n3 0 1 2\n".into());
+}
