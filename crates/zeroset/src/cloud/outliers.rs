@@ -1,32 +1,35 @@
 //! Points that belong to no surface: birds, low noise, stray echoes.
 //!
 //! # Rule
-//! Let r(i) be the distance from point i to its k-th nearest other point, g the median of all r(i) > 0, and m(i) the median of
-//! r(j) over the 2 k nearest other points j of i (the lower one, so that k - 1 strays do not outvote them). Point i is isolated if
+//! Let r(i) be the distance from point i to its k-th nearest other point, g the median of all r(i) > 0, and m(i) the
+//! median of r(j) over the 2 k nearest other points j of i (the lower one, so that k - 1 strays do not outvote them).
+//! Point i is isolated if
 //!
 //! ```text
 //! r(i) > 12 max(g, m(i))
 //! ```
 //!
-//! that is, if its surroundings are twelve times emptier than is usual in the cloud and twelve times emptier than at the
-//! places that are nearest to it. Points that are not finite are isolated.
+//! that is, if its surroundings are twelve times emptier than is usual in the cloud and twelve times emptier than at
+//! the places that are nearest to it. Points that are not finite are isolated.
 //!
-//! The second part keeps sparse surfaces: the neighbours of a point in a sparse region are in it, too. The first keeps a
-//! few points between dense ones. A wall with 3 % of the density of the roof above has r six times larger than the roof, so
-//! twelve leaves it room for gaps of twice its own spacing.
+//! The second part keeps sparse surfaces: the neighbours of a point in a sparse region are in it, too. The first keeps
+//! a few points between dense ones. A wall with 3 % of the density of the roof above has r six times larger than the
+//! roof, so twelve leaves it room for gaps of twice its own spacing.
 //!
 //! # Cost
-//! A search for k + 1 neighbours for every point, and for 2 k + 1 for those with r(i) > 12 g: O(n log n), on all threads.
+//! A search for k + 1 neighbours for every point, and for 2 k + 1 for those with r(i) > 12 g: O(n log n), on all
+//! threads.
 //!
 //! # Guaranteed
-//! The same answer on any number of threads. No point is isolated in a cloud of k points or fewer. Clouds of any density: only ratios
-//! count.
+//! The same answer on any number of threads. No point is isolated in a cloud of k points or fewer. Clouds of any
+//! density: only ratios count.
 //!
 //! # Not guaranteed
 //! On the bare walls of `airborne-city` chance gaps cost a few points in 400,000 at k = 8, and one at most at k = 16.
-//! A flock of more than k points stays, since its points are near each other. So does a single point closer to a surface than
-//! about twelve times r on it. Where a surface's spacing jumps to over twelve times, the first points of the sparse side may
-//! be taken for strays of the dense one. Where points stand in one place more than k times over, r is 0 and g is taken over the others.
+//! A flock of more than k points stays, since its points are near each other. So does a single point closer to a
+//! surface than about twelve times r on it. Where a surface's spacing jumps to over twelve times, the first points of
+//! the sparse side may be taken for strays of the dense one. Where points stand in one place more than k times over, r
+//! is 0 and g is taken over the others.
 
 use super::Cloud;
 use crate::spatial::{Neighbour, PointTree};
@@ -38,10 +41,11 @@ const EMPTIER: f64 = 12.0;
 /// Points that one task looks at.
 const CHUNK: usize = 1 << 12;
 
-/// For each point whether it is isolated: whether its `k`-th nearest other point is much farther than is usual around there.
+/// For each point whether it is isolated: whether its `k`-th nearest other point is much farther than is usual around
+/// there.
 ///
-/// `k` is the number of stray points that may stand together and still be found; 0 is taken as 1. Choose 4 or more: with 2,
-/// chance gaps in a sparse wall are enough to lose a point of it now and then.
+/// `k` is the number of stray points that may stand together and still be found; 0 is taken as 1. Choose 4 or more:
+/// with 2, chance gaps in a sparse wall are enough to lose a point of it now and then.
 #[must_use]
 pub fn isolated_points(cloud: &Cloud, k: usize) -> Vec<bool> {
     isolated_with_tree(cloud, &PointTree::new(&cloud.points), k.max(1))

@@ -1,22 +1,22 @@
 //! How well a mesh agrees with the truth.
 //!
 //! # What
-//! Both surfaces are sampled by area. For each sample the exact closest point of the other surface is found; distances and
-//! normals of these pairs, both ways, make the figures.
+//! Both surfaces are sampled by area. For each sample the exact closest point of the other surface is found; distances
+//! and normals of these pairs, both ways, make the figures.
 //!
 //! # Definitions
-//! - *Distances*: mean, root of the mean square, 95th percentile and maximum of the samples' distances, from the mesh to the
-//!   truth, from the truth to the mesh, and combined: mean and RMS average the two ways with equal weight, the percentile is
-//!   that of all samples together, the maximum the larger one.
-//! - *Precision*: share of the mesh's samples within tau of the truth. *Recall*: share of the truth's within tau of the mesh.
-//!   *F-score*: their harmonic mean.
-//! - *Normal consistency*: mean |m . n| over the pairs of one way, averaged over the two ways; m and n are the unit normals of the
-//!   two triangles.
+//! - *Distances*: mean, root of the mean square, 95th percentile and maximum of the samples' distances, from the mesh
+//!   to the truth, from the truth to the mesh, and combined: mean and RMS average the two ways with equal weight, the
+//!   percentile is that of all samples together, the maximum the larger one.
+//! - *Precision*: share of the mesh's samples within tau of the truth. *Recall*: share of the truth's within tau of the
+//!   mesh. *F-score*: their harmonic mean.
+//! - *Normal consistency*: mean |m . n| over the pairs of one way, averaged over the two ways; m and n are the unit
+//!   normals of the two triangles.
 //! - *Orientation*: share of the mesh's samples with m . n > 0.
 //! - *Near edges*: the same figures over the samples within `edge_band` of the truth's creases.
 //! - *Crease distance*: distances to the mesh of points spread evenly by length over the truth's creases.
-//! - *Occupancy*: share of uniform random points of the truth's box, its sides made a tenth longer around its middle, at which
-//!   mesh and truth agree whether the winding number is over 1/2.
+//! - *Occupancy*: share of uniform random points of the truth's box, its sides made a tenth longer around its middle,
+//!   at which mesh and truth agree whether the winding number is over 1/2.
 //!
 //! # Cost
 //! Two searches a sample at a microsecond or two, and building both trees: about a second for 300,000 samples a side.
@@ -31,8 +31,8 @@
 //! other side, which shows as wrong orientation.
 //!
 //! # Source
-//! Two-way sampled distances: Cignoni, Rocchini and Scopigno, "Metro", 1998. F-score of surfaces: Knapitsch, Park, Zhou and Koltun,
-//! "Tanks and Temples", 2017.
+//! Two-way sampled distances: Cignoni, Rocchini and Scopigno, "Metro", 1998. F-score of surfaces: Knapitsch, Park, Zhou
+//! and Koltun, "Tanks and Temples", 2017.
 //!
 //! ```
 //! use zeroset::mesh::{CompareParams, compare};
@@ -70,9 +70,11 @@ const DOUBTFUL: f64 = 0.2;
 pub struct CompareParams {
     /// Number of samples on each surface.
     pub samples: usize,
-    /// The distance within which a sample counts as right, in the meshes' unit. `None`: 0.002 of the diagonal of the truth's box.
+    /// The distance within which a sample counts as right, in the meshes' unit. `None`: 0.002 of the diagonal of the
+    /// truth's box.
     pub tau: Option<f64>,
-    /// The distance from a crease within which a sample counts as near it. `None`: 0.01 of the diagonal of the truth's box.
+    /// The distance from a crease within which a sample counts as near it. `None`: 0.01 of the diagonal of the truth's
+    /// box.
     pub edge_band: Option<f64>,
     /// The angle, in radians, from which an edge of the truth is a crease.
     pub sharp_angle: f64,
@@ -192,7 +194,8 @@ pub struct CompareReport {
     pub truth_diagonal: f64,
     /// Over all samples.
     pub overall: Agreement,
-    /// Over the samples near the truth's creases; `None` if the truth has none, or either surface has no sample near them.
+    /// Over the samples near the truth's creases; `None` if the truth has none, or either surface has no sample near
+    /// them.
     pub near_edges: Option<Agreement>,
     /// From the truth's creases to the mesh; `None` if the truth has none.
     pub crease_distance: Option<OneWay>,

@@ -11,7 +11,8 @@
 //! O(V + F log d), as for [`topology`](super::topology()).
 //!
 //! # Guaranteed
-//! Segments come in the order of their lower and then their higher vertex, each once. Edges of three and more triangles are sharp.
+//! Segments come in the order of their lower and then their higher vertex, each once. Edges of three and more triangles
+//! are sharp.
 //!
 //! # Not guaranteed
 //! Boundary edges are no creases. An edge beside a triangle without area has no angle and is left out.

@@ -17,8 +17,8 @@ struct Side {
 
 /// All sides of all triangles, grouped by edge: by the lower vertex in buckets, and sorted by the higher within each.
 ///
-/// Triangles that repeat a vertex are left out. Counting into buckets and sorting these small lists takes linear time for
-/// meshes whose vertices have few neighbours, and the order follows from the mesh alone.
+/// Triangles that repeat a vertex are left out. Counting into buckets and sorting these small lists takes linear time
+/// for meshes whose vertices have few neighbours, and the order follows from the mesh alone.
 #[derive(Debug)]
 pub(super) struct Edges<'a> {
     mesh: &'a Mesh,
@@ -140,7 +140,8 @@ fn sort_buckets(starts: &[u32], sides: &mut [Side], vertices: std::ops::Range<us
 pub(super) const MOST_TRIANGLES: usize = u32::MAX as usize / 3;
 
 impl Mesh {
-    /// Whether the triangles name only vertices that are there, the vertices are finite, and there are fewer than 2^32 / 3 triangles.
+    /// Whether the triangles name only vertices that are there, the vertices are finite, and there are fewer than 2^32
+    /// / 3 triangles.
     ///
     /// # Errors
     /// The first offence found, by its lowest index.

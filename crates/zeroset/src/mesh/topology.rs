@@ -7,9 +7,10 @@
 //! # Definitions
 //! - *Component*: triangles that are connected through shared edges. Two pieces that touch at one vertex only are two.
 //! - *Boundary edge*: an edge of exactly one triangle. *Non-manifold edge*: of three or more.
-//! - *Fan*: the triangles round a vertex that are connected through edges at that vertex. A vertex with more than one fan is
-//!   a *non-manifold vertex* (a bow-tie).
-//! - *Inconsistent edge*: an edge whose two triangles run along it in the same direction, so that one of them is turned over.
+//! - *Fan*: the triangles round a vertex that are connected through edges at that vertex. A vertex with more than one
+//!   fan is a *non-manifold vertex* (a bow-tie).
+//! - *Inconsistent edge*: an edge whose two triangles run along it in the same direction, so that one of them is turned
+//!   over.
 //! - *Euler characteristic*: V - E + F. Of the whole mesh with vertices as stored; of a component with one vertex for
 //!   each fan, so that a bow-tie does not change what its two sides are.
 //! - *Genus* of a component that is closed, manifold and consistently oriented: 1 - (V - E + F) / 2.
@@ -20,10 +21,12 @@
 //! vertices are counted as degenerate, too, but take part, as they hold their neighbours together.
 //!
 //! # Cost
-//! O(V + F log d), d the number of neighbours of a vertex; 10 million triangles take a few seconds and about 65 bytes each.
+//! O(V + F log d), d the number of neighbours of a vertex; 10 million triangles take a few seconds and about 65 bytes
+//! each.
 //!
 //! # Guaranteed
-//! The same result, sums of areas included, on any number of threads. Area and volume are summed in chunks of fixed size.
+//! The same result, sums of areas included, on any number of threads. Area and volume are summed in chunks of fixed
+//! size.
 //!
 //! # Not guaranteed
 //! Nothing is said about triangles that cut through each other.
@@ -140,7 +143,8 @@ struct EdgeCounts {
 /// Examines a mesh.
 ///
 /// # Errors
-/// [`MeshError`] if a triangle names a vertex that is not there, a vertex is not finite, or there are 2^32 / 3 triangles or more.
+/// [`MeshError`] if a triangle names a vertex that is not there, a vertex is not finite, or there are 2^32 / 3
+/// triangles or more.
 pub fn topology(mesh: &Mesh) -> Result<Topology, MeshError> {
     let edges = Edges::new(mesh)?;
     let mut pieces = Groups::new(mesh.triangles.len());

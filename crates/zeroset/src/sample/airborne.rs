@@ -1,22 +1,23 @@
 //! A simulated airborne laser scanner.
 //!
 //! # What
-//! Three parallel flight lines over the unit square. From each the scanner sends pulses in lines across the track, evenly
-//! in angle; a pulse that meets the truth gives one point, if enough of it comes back.
+//! Three parallel flight lines over the unit square. From each the scanner sends pulses in lines across the track,
+//! evenly in angle; a pulse that meets the truth gives one point, if enough of it comes back.
 //!
 //! # Model
 //! - Flight height 0.65, scan angle to +-25 degrees, neighbouring strips overlap by 30 % of their width on the ground.
 //!   Scan lines are 1.4 times as far apart as the pulses in them.
 //! - Occlusion is real: each pulse is a ray cast against the truth, and the first surface wins.
-//! - A surface met at a grazing angle returns little: a pulse is kept with probability s^2 (3 - 2 s), where s runs from 0 to 1
-//!   while the cosine of the angle of incidence runs from 0 to 0.5. Roofs and ground keep nearly all.
-//! - The range is off by Gaussian noise of the given deviation; a fifth of it is added in every direction for the pointing.
+//! - A surface met at a grazing angle returns little: a pulse is kept with probability s^2 (3 - 2 s), where s runs from
+//!   0 to 1 while the cosine of the angle of incidence runs from 0 to 0.5. Roofs and ground keep nearly all.
+//! - The range is off by Gaussian noise of the given deviation; a fifth of it is added in every direction for the
+//!   pointing.
 //!
 //! The density of points on walls comes out at about 3 % of that on roofs.
 //!
 //! # Cost
-//! One ray a pulse, about a microsecond each; some of the pulses fall beside the square or are lost at walls. Beyond the points
-//! themselves the memory does not grow with their number.
+//! One ray a pulse, about a microsecond each; some of the pulses fall beside the square or are lost at walls. Beyond
+//! the points themselves the memory does not grow with their number.
 //!
 //! # Not modelled
 //! Several echoes of one pulse, the width of the beam, terrain, plants, and errors of the aircraft's own position.
@@ -37,8 +38,8 @@ const FLIGHT_LINES: usize = 3;
 const LINE_SPACING: f64 = 0.424;
 /// Distance between scan lines over distance between pulses in them.
 const SCAN_LINE_RATIO: f64 = 1.4;
-/// Cosines of the angle of incidence at which no pulse and every pulse returns. Set so that walls hold 3 % of the density of
-/// roofs: with 0.1 and 0.6, and 22 degrees, they hold 1 %.
+/// Cosines of the angle of incidence at which no pulse and every pulse returns. Set so that walls hold 3 % of the
+/// density of roofs: with 0.1 and 0.6, and 22 degrees, they hold 1 %.
 const RETURNING: [f64; 2] = [0.0, 0.5];
 /// Deviation of the pointing noise over that of the range noise.
 const POINTING: f64 = 0.2;

@@ -17,15 +17,15 @@
 //! | `stairs` | five steps, 1 long, 0.6 wide, 0.5 high | by area | 0.001 |
 //! | `pocket-plate` | a plate of 1 x 0.7 x 0.15 with four pockets; floor and walls 0.01 thick | by area | 0.001 |
 //!
-//! Noise is Gaussian, the same in all directions but for `airborne-city`. All truths but the cities' are closed. Triangles are
-//! counter-clockwise from outside, or from above the ground.
+//! Noise is Gaussian, the same in all directions but for `airborne-city`. All truths but the cities' are closed.
+//! Triangles are counter-clockwise from outside, or from above the ground.
 //!
 //! # Guaranteed
 //! Equal arguments give equal bytes on any number of threads. Exactly the wanted number of points.
 //!
 //! # Not guaranteed
-//! Equal bytes on different platforms: sine and logarithm differ in the last bit between mathematics libraries. Points come
-//! in the order in which they were made (along the triangles, or along the flight), not shuffled.
+//! Equal bytes on different platforms: sine and logarithm differ in the last bit between mathematics libraries. Points
+//! come in the order in which they were made (along the triangles, or along the flight), not shuffled.
 //!
 //! ```
 //! use zeroset::sample::{Scene, SceneKind};
@@ -105,8 +105,8 @@ impl SceneKind {
         }
     }
 
-    /// The noise to use where the user names none: 0.001 of the scene's unit length. On the pocket plate that is a tenth
-    /// of its walls.
+    /// The noise to use where the user names none: 0.001 of the scene's unit length. On the pocket plate that is a
+    /// tenth of its walls.
     #[must_use]
     pub fn default_noise(self) -> f64 {
         0.001

@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 
 /// The surface of a union of bricks of an uneven grid.
 ///
-/// `planes[a]` are the increasing grid coordinates along axis a; `solid` tells whether the brick between planes (i, i+1),
-/// (j, j+1), (k, k+1) is full. Every face between a full and an empty brick becomes two triangles over the grid's own
-/// vertices, so neighbours always share whole edges. Two full bricks that touch along an edge or at a corner only would
-/// make that edge or corner non-manifold; none of the shapes here has such a pair.
+/// `planes[a]` are the increasing grid coordinates along axis a; `solid` tells whether the brick between planes (i,
+/// i+1), (j, j+1), (k, k+1) is full. Every face between a full and an empty brick becomes two triangles over the grid's
+/// own vertices, so neighbours always share whole edges. Two full bricks that touch along an edge or at a corner only
+/// would make that edge or corner non-manifold; none of the shapes here has such a pair.
 fn bricks(planes: [&[f64]; 3], solid: impl Fn([usize; 3]) -> bool) -> Mesh {
     let counts = planes.map(|p| p.len() - 1);
     let full = |cell: [isize; 3]| {

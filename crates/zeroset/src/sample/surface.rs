@@ -14,12 +14,12 @@ pub struct SurfaceSamples {
     pub triangles: Vec<u32>,
 }
 
-/// `n` points on a mesh, the same expected number on any two pieces of equal area. `None` if the mesh has no area, or an
-/// area that is not finite, or names vertices that are not there.
+/// `n` points on a mesh, the same expected number on any two pieces of equal area. `None` if the mesh has no area, or
+/// an area that is not finite, or names vertices that are not there.
 ///
-/// The area, with the triangles in a row, is cut into `n` equal strata with one point in each (so a piece of area A holds
-/// n A / total points to within 2), and the points come in the order of the triangles: neighbours in the list are often
-/// neighbours in space, which makes searches with them fast. Within its triangle a point is uniform.
+/// The area, with the triangles in a row, is cut into `n` equal strata with one point in each (so a piece of area A
+/// holds n A / total points to within 2), and the points come in the order of the triangles: neighbours in the list are
+/// often neighbours in space, which makes searches with them fast. Within its triangle a point is uniform.
 ///
 /// The same seed gives the same points on any number of threads. O(triangles + n).
 #[must_use]

@@ -1,13 +1,13 @@
 //! Bounding-volume trees over points and over triangles.
 //!
 //! # What
-//! [`PointTree`] finds the nearest points of a cloud; [`TriangleTree`] finds the exact closest point of a mesh, the first
-//! hit of a ray, and the generalised winding number. All answers are exact but the last, which states its error.
+//! [`PointTree`] finds the nearest points of a cloud; [`TriangleTree`] finds the exact closest point of a mesh, the
+//! first hit of a ray, and the generalised winding number. All answers are exact but the last, which states its error.
 //!
 //! # How
-//! One builder serves both: items are split at the median of the longest axis of their centres until eight or fewer (points)
-//! or four or fewer (triangles) remain. An inner node keeps the tight boxes of its two children side by side, so one fetch
-//! decides which child to enter first and whether to enter the other at all.
+//! One builder serves both: items are split at the median of the longest axis of their centres until eight or fewer
+//! (points) or four or fewer (triangles) remain. An inner node keeps the tight boxes of its two children side by side,
+//! so one fetch decides which child to enter first and whether to enter the other at all.
 //!
 //! # Cost
 //! Building n items costs O(n log n) and runs on all threads. A query visits O(log n) nodes for data that lie on a

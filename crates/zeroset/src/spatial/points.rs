@@ -48,7 +48,8 @@ struct Entry {
 }
 
 impl Item for Entry {
-    // Measured with 1 M points on a sphere: 4 doubles the nodes for no faster query, 16 slows the query by a tenth, 32 by half.
+    // Measured with 1 M points on a sphere: 4 doubles the nodes for no faster query, 16 slows the query by a tenth, 32
+    // by half.
     const LEAF: usize = 8;
 
     #[inline]

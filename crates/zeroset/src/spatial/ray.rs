@@ -1,9 +1,9 @@
 //! First hits of rays.
 //!
 //! # Formula
-//! The triangle is sheared so that the ray runs along one axis; the signs of three planar cross products then say on which
-//! side of each edge the ray passes (Woop, Benthin and Wald, "Watertight ray/triangle intersection", JCGT 2013). Two
-//! triangles evaluate their common edge from the same numbers, so their signs are exact opposites.
+//! The triangle is sheared so that the ray runs along one axis; the signs of three planar cross products then say on
+//! which side of each edge the ray passes (Woop, Benthin and Wald, "Watertight ray/triangle intersection", JCGT 2013).
+//! Two triangles evaluate their common edge from the same numbers, so their signs are exact opposites.
 //!
 //! # Guaranteed
 //! No ray slips through an edge or a vertex between triangles: zero counts as inside on both sides.
@@ -56,8 +56,8 @@ impl Ray {
         }
         let inverse = direction.map(f64::recip);
         let shear = [direction[x] / direction[z], direction[y] / direction[z], 1.0 / direction[z]];
-        // The sheared corners carry a few roundings of numbers of this size; without the pad a box could miss what a triangle
-        // in it counts as a hit.
+        // The sheared corners carry a few roundings of numbers of this size; without the pad a box could miss what a
+        // triangle in it counts as a hit.
         let pad = 1e-14 * scene.farthest_squared(origin).sqrt();
         Some(Self { origin, direction, inverse, axes: [x, y, z], shear, pad })
     }

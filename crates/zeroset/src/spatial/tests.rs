@@ -204,7 +204,8 @@ fn segments_are_searched_as_exactly_as_triangles() {
 fn rays_hit_the_first_triangle_and_slip_through_no_edge() {
     let mesh = ellipsoid(16, 1.0);
     let tree = TriangleTree::new(&mesh);
-    // From the centre every ray leaves; aimed at vertices and at the middle of edges it meets several triangles at once.
+    // From the centre every ray leaves; aimed at vertices and at the middle of edges it meets several triangles at
+    // once.
     let mut targets = mesh.vertices.clone();
     for t in &mesh.triangles {
         let [a, b, _] = t.map(|v| mesh.vertices[v as usize]);

@@ -28,8 +28,8 @@ impl Aabb {
 
     /// Squared distance to the box, 0 inside.
     ///
-    /// Each operation rounds monotonically and in the order of [`vec3::distance_squared`], so the result never exceeds the
-    /// computed squared distance to any point in the box. Pruning by it loses no answer.
+    /// Each operation rounds monotonically and in the order of [`vec3::distance_squared`], so the result never exceeds
+    /// the computed squared distance to any point in the box. Pruning by it loses no answer.
     #[inline]
     pub(super) fn distance_squared(&self, q: Vec3) -> f64 {
         let gap = |a: usize| (self.low[a] - q[a]).max(q[a] - self.high[a]).max(0.0);
@@ -179,7 +179,8 @@ fn build<T: Item>(items: &mut [T], nodes: &mut [Node], levels: u32) -> (Aabb, us
     }
     let axis = items.iter().fold(Aabb::EMPTY, |all, item| all.union(Aabb::of(item.centre()))).longest_axis();
     let middle = items.len() / 2;
-    // The index breaks ties, so which item goes where follows from the items alone, and equal points are sorted by index.
+    // The index breaks ties, so which item goes where follows from the items alone, and equal points are sorted by
+    // index.
     items.select_nth_unstable_by(middle, |a, b| {
         a.centre()[axis].total_cmp(&b.centre()[axis]).then(a.index().cmp(&b.index()))
     });

@@ -19,8 +19,8 @@ pub struct ClosestPoint {
 
 /// A tree over the triangles of a mesh: closest points, ray hits and winding numbers.
 ///
-/// Positions are in the mesh's local coordinates. Triangles that name a vertex that is not there, or one with a non-finite
-/// coordinate, are passed over. Degenerate triangles count as the segment or point that they cover.
+/// Positions are in the mesh's local coordinates. Triangles that name a vertex that is not there, or one with a
+/// non-finite coordinate, are passed over. Degenerate triangles count as the segment or point that they cover.
 ///
 /// ```
 /// use zeroset::{mesh::Mesh, spatial::TriangleTree};
@@ -161,8 +161,8 @@ impl Collector<Triangle> for Closest {
             if (aabb.distance_squared(self.q), triangle.index) >= self.limit() {
                 continue;
             }
-            // The rounded point may stand a last bit outside the box; back inside, no box on the way down to it can seem
-            // farther than it is, so the answer does not depend on the shape of the tree.
+            // The rounded point may stand a last bit outside the box; back inside, no box on the way down to it can
+            // seem farther than it is, so the answer does not depend on the shape of the tree.
             let point = closest_on_triangle(triangle.corners, self.q);
             let position = vec3::max(aabb.low, vec3::min(aabb.high, point));
             let distance_squared = vec3::distance_squared(position, self.q);
@@ -192,9 +192,9 @@ fn closest_on_segment(a: Vec3, b: Vec3, q: Vec3) -> Vec3 {
 
 /// The point of a triangle closest to `q`.
 ///
-/// The foot of the perpendicular counts if it lies strictly within all three edges; otherwise the nearest of the closest
-/// points on the edges is the answer. A needle whose normal has drowned in rounding fails the first test or lands on
-/// its edges anyway, so its answer is right to the width of the needle.
+/// The foot of the perpendicular counts if it lies strictly within all three edges; otherwise the nearest of the
+/// closest points on the edges is the answer. A needle whose normal has drowned in rounding fails the first test or
+/// lands on its edges anyway, so its answer is right to the width of the needle.
 pub(super) fn closest_on_triangle([a, b, c]: [Vec3; 3], q: Vec3) -> Vec3 {
     let (ab, ac, aq) = (vec3::sub(b, a), vec3::sub(c, a), vec3::sub(q, a));
     let normal = vec3::cross(ab, ac);

@@ -5,9 +5,10 @@
 //! outside, -1 inside one turned inside out, and a smooth value between where the surface has holes.
 //!
 //! # Formula
-//! w(q) = 1/(4 pi) sum over triangles of the signed solid angle under which q sees the triangle. Near triangles are taken
-//! exactly (van Oosterom and Strackee, "The solid angle of a plane triangle", 1983). A cluster of far ones is expanded
-//! around its area centroid p: with d = p - q, N the sum of area vectors A_t n_t, and M = sum A_t (c_t - p) n_t^T,
+//! w(q) = 1/(4 pi) sum over triangles of the signed solid angle under which q sees the triangle. Near triangles are
+//! taken exactly (van Oosterom and Strackee, "The solid angle of a plane triangle", 1983). A cluster of far ones is
+//! expanded around its area centroid p: with d = p - q, N the sum of area vectors A_t n_t, and M = sum A_t (c_t - p)
+//! n_t^T,
 //!
 //! ```text
 //! 4 pi w = N.d/|d|^3  +  tr M/|d|^3 - 3 d.M d/|d|^5  +  R
@@ -24,9 +25,9 @@
 //! [`WindingNumber::error_bound`] is the sum of the bounds of the clusters used, plus nothing for exact triangles.
 //!
 //! # Not guaranteed
-//! The bound does not count rounding (about 1e-15 a triangle). It is pessimistic: remainders of different sign cancel, and
-//! the error measured on closed surfaces is at most 0.02, enough to tell 0 from 1 but no more. On the surface itself w jumps,
-//! and any value between is given.
+//! The bound does not count rounding (about 1e-15 a triangle). It is pessimistic: remainders of different sign cancel,
+//! and the error measured on closed surfaces is at most 0.02, enough to tell 0 from 1 but no more. On the surface
+//! itself w jumps, and any value between is given.
 //!
 //! # Source
 //! Barill, Dickson, Schmidt, Levin and Jacobson, "Fast winding numbers for soups and clouds", 2018. The bound, and
@@ -37,8 +38,8 @@ use super::triangles::{Triangle, TriangleTree};
 use crate::vec3::{self, Vec3};
 use std::f64::consts::PI;
 
-/// A cluster is expanded beyond this multiple of its radius. Worst error measured on a sphere of 16 k triangles, for 2, 3, 4,
-/// 6, 8: 0.049, 0.025, 0.013, 0.006, 0.003; a query costs in proportion to the square.
+/// A cluster is expanded beyond this multiple of its radius. Worst error measured on a sphere of 16 k triangles, for 2,
+/// 3, 4, 6, 8: 0.049, 0.025, 0.013, 0.006, 0.003; a query costs in proportion to the square.
 const FAR: f64 = 4.0;
 
 /// Below this many triangles a subtree is summed up by one thread.

@@ -107,8 +107,8 @@ fn a_shifted_box_is_found_at_its_creases_and_in_its_space() {
     let overhang = 2.0 * (0.6 + 0.8) * dx * dx / 2.0;
     assert_near(report.overall.distances.combined.mean, (across * dx + overhang) / total, 5e-5);
     assert_near(report.overall.distances.combined.max, dx, 1e-12);
-    // Edges along y and z at x = 0 and 1 are off by dx or lie in the shifted face at distance 0; those along x run into it.
-    // At x = 0: 2 (0.8 + 0.6) of length at distance dx from the shifted box; at x = 1 its long faces cover them.
+    // Edges along y and z at x = 0 and 1 are off by dx or lie in the shifted face at distance 0; those along x run into
+    // it. At x = 0: 2 (0.8 + 0.6) of length at distance dx from the shifted box; at x = 1 its long faces cover them.
     let total_length = 4.0 * 2.4;
     let expected = (2.8 * dx + 4.0 * dx * dx / 2.0) / total_length;
     assert_near(report.crease_distance.expect("a box has creases").mean, expected, 1e-6);
