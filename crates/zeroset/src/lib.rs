@@ -3,7 +3,8 @@
 //! `zeroset` finds a function F of space whose zero set is the surface that a cloud of points was measured on. It needs
 //! no normals and no orientation. F is negative inside and positive outside.
 //!
-//! The rooms follow the data: [`cloud`] -> [`domain`] -> [`fit`] -> [`field`] -> [`contour`] -> [`mesh`]. The remaining
+//! The rooms follow the data: [`cloud`] -> [`domain`] -> [`fit`] -> [`field`] -> [`contour`] -> [`mesh`]; [`reconstruct`]
+//! walks through all of them in one call. The remaining
 //! rooms serve all of these: [`spatial`] answers nearest-neighbour questions, [`sample`] makes scenes with a known truth, and
 //! [`monitor`] carries progress out and a wish to stop in.
 
@@ -14,6 +15,7 @@ pub mod field;
 pub mod fit;
 pub mod mesh;
 pub mod monitor;
+pub mod reconstruct;
 pub mod sample;
 pub mod spatial;
 

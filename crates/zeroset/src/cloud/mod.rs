@@ -1,9 +1,11 @@
 //! Point clouds: positions with what was measured beside them.
 
+mod filter;
 mod offset;
 mod outliers;
 mod spacing;
 
+pub use filter::{Filter, FilterReport, NOISE_CLASSES, retain};
 pub use offset::choose_offset;
 pub use outliers::isolated_points;
 pub use spacing::Spacing;

@@ -37,4 +37,4 @@ mod seed;
 mod solve;
 mod stencil;
 
-pub use cascade::{FitError, FitParams, FitReport, Iteration, LevelReport, Scene, fit};
+pub use cascade::{FitError, FitParams, FitReport, Iteration, LevelReport, Prepared, Scene, fit};

@@ -35,7 +35,7 @@ pub(super) fn boundary_potential(level: &Level, faces: FixedFaces) -> Vec<f32> {
         *r = -q;
     }
     let scale = r.iter().map(|r| r * r).sum::<f64>().sqrt();
-    let params = SolveParams { tolerance: 1e-10, max_steps: 2000 };
+    let params = SolveParams { tolerance: 1e-8, max_steps: 1000 };
     conjugate_gradients(level, &mut f, &mut r, &mut p, &mut q, scale, params);
     f.into_iter().map(|v| v as f32).collect()
 }

@@ -1,0 +1,110 @@
+//! Which points of a cloud to use.
+
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::Cloud;
+
+/// ASPRS classes that hold noise: 7 low point, 18 high noise. Left out unless asked for.
+pub const NOISE_CLASSES: [u8; 2] = [7, 18];
+
+/// Which points to keep.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Filter {
+    /// Only these classes, where the cloud has classes.
+    pub only_classes: Option<Vec<u8>>,
+    /// None of these classes.
+    pub exclude_classes: Vec<u8>,
+    /// Only points in this box of world coordinates; an axis may be unbounded.
+    pub bounds: Option<[[f64; 2]; 3]>,
+}
+
+/// How many points a [`Filter`] left out.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+pub struct FilterReport {
+    /// By class.
+    pub by_class: usize,
+    /// By the box.
+    pub by_bounds: usize,
+}
+
+impl Filter {
+    /// Drops the points that the filter leaves out. Points keep their order.
+    #[must_use]
+    pub fn apply(&self, cloud: &mut Cloud) -> FilterReport {
+        let mut report = FilterReport::default();
+        if let Some(classes) = &cloud.attributes.classes {
+            let wanted: [bool; 256] = std::array::from_fn(|c| {
+                let c = c as u8;
+                self.only_classes.as_ref().is_none_or(|only| only.contains(&c)) && !self.exclude_classes.contains(&c)
+            });
+            let keep: Vec<bool> = classes.par_iter().map(|&c| wanted[usize::from(c)]).collect();
+            report.by_class = retain(cloud, &keep);
+        }
+        if let Some(bounds) = self.bounds {
+            let offset = cloud.world_from_local;
+            let inside = |p: &[f64; 3]| (0..3).all(|a| (bounds[a][0]..=bounds[a][1]).contains(&(p[a] + offset[a])));
+            let keep: Vec<bool> = cloud.points.par_iter().map(inside).collect();
+            report.by_bounds = retain(cloud, &keep);
+        }
+        report
+    }
+}
+
+/// Keeps the points that `keep` says, with what was measured beside them; returns how many went.
+pub fn retain(cloud: &mut Cloud, keep: &[bool]) -> usize {
+    let gone = keep.iter().filter(|k| !**k).count();
+    if gone > 0 {
+        retain_items(&mut cloud.points, keep);
+        if let Some(colors) = &mut cloud.attributes.colors {
+            retain_items(colors, keep);
+        }
+        if let Some(intensities) = &mut cloud.attributes.intensities {
+            retain_items(intensities, keep);
+        }
+        if let Some(classes) = &mut cloud.attributes.classes {
+            retain_items(classes, keep);
+        }
+    }
+    gone
+}
+
+fn retain_items<T>(items: &mut Vec<T>, keep: &[bool]) {
+    let mut keep = keep.iter();
+    items.retain(|_| *keep.next().unwrap_or(&true));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cloud::Attributes;
+
+    fn cloud() -> Cloud {
+        Cloud {
+            world_from_local: [100.0, 0.0, 0.0],
+            points: (0..6).map(|i| [f64::from(i), 0.0, 0.0]).collect(),
+            attributes: Attributes { classes: Some(vec![2, 6, 7, 18, 2, 9]), ..Attributes::default() },
+            crs: None,
+        }
+    }
+
+    #[test]
+    fn classes_are_kept_and_left_out() {
+        let mut c = cloud();
+        let filter = Filter { exclude_classes: NOISE_CLASSES.to_vec(), ..Filter::default() };
+        assert_eq!(filter.apply(&mut c).by_class, 2);
+        assert_eq!(c.attributes.classes, Some(vec![2, 6, 2, 9]));
+        let filter = Filter { only_classes: Some(vec![2]), ..Filter::default() };
+        assert_eq!(filter.apply(&mut c).by_class, 2);
+        assert_eq!(c.points, vec![[0.0; 3], [4.0, 0.0, 0.0]]);
+    }
+
+    #[test]
+    fn bounds_are_world_coordinates() {
+        let mut c = cloud();
+        let all = [f64::NEG_INFINITY, f64::INFINITY];
+        let filter = Filter { bounds: Some([[101.0, 103.0], all, all]), ..Filter::default() };
+        assert_eq!(filter.apply(&mut c), FilterReport { by_class: 0, by_bounds: 3 });
+        assert_eq!(c.points.len(), 3);
+    }
+}

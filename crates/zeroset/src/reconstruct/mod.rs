@@ -1,0 +1,92 @@
+//! The main job in one call: a raw cloud in, a mesh out.
+//!
+//! [`plan`] resolves every default (scene, resolution, trim) against the cloud and says what the work will cost; [`Plan::run`]
+//! does it. The two are apart so that a caller can show the plan first.
+//!
+//! ```
+//! use zeroset::monitor::Monitor;
+//! use zeroset::reconstruct::{ReconstructParams, plan};
+//! use zeroset::sample::{Scene, SceneKind};
+//!
+//! let cloud = Scene::new(SceneKind::Torus, 1).points(20_000, 0.001, 1);
+//! let (mesh, report) = plan(&cloud, &ReconstructParams::default(), &())?.run(&())?;
+//! assert!(mesh.triangles.len() > 1000);
+//! assert_eq!(report.plan.scene, zeroset::fit::Scene::Object);
+//! # Ok::<(), zeroset::reconstruct::ReconstructError>(())
+//! ```
+
+mod attributes;
+mod frame;
+mod plan;
+mod run;
+mod scene;
+
+pub use frame::Up;
+pub use plan::{AttributeChoice, Plan, PlanReport, ReconstructParams, Resolution, Trim, plan};
+pub use run::{ReconstructReport, StageSeconds};
+pub use scene::SceneEvidence;
+
+use crate::fit::FitError;
+use crate::monitor::Cancelled;
+
+/// A reconstruction that could not be made. Each message names the remedy.
+#[derive(Debug, thiserror::Error)]
+pub enum ReconstructError {
+    /// Fewer distinct points than a surface needs.
+    #[error("{found} points are too few to fit a surface; give at least {needed}")]
+    TooFewPoints {
+        /// Points found.
+        found: usize,
+        /// Points needed.
+        needed: usize,
+    },
+    /// All points in one place, or on one line.
+    #[error("the points lie {shape}, so they bear no surface; check the columns of the file, or give more of the scan")]
+    Degenerate {
+        /// "in one place" or "on one line".
+        shape: &'static str,
+    },
+    /// A few points so far away that the rest is a speck in the box.
+    #[error(
+        "the box of the points is {extent:.3e} wide but the points are {spacing:.3e} apart, so stray points lie far off; \
+         give --bounds or --outliers 8, or a --resolution of your own"
+    )]
+    Astray {
+        /// Longest side of the box.
+        extent: f64,
+        /// Spacing of the points.
+        spacing: f64,
+    },
+    /// The resolution asked for needs more memory than allowed.
+    #[error(
+        "a resolution of {resolution} needs about {needed_gb:.1} GB, more than the {allowed_gb:.1} GB at hand; \
+         give a resolution of {possible:.4} or more, or --bounds"
+    )]
+    Memory {
+        /// The resolution asked for.
+        resolution: f64,
+        /// Memory that it needs.
+        needed_gb: f64,
+        /// Memory allowed.
+        allowed_gb: f64,
+        /// A resolution that fits.
+        possible: f64,
+    },
+    /// The fit found no surface at all.
+    #[error("no surface was found; give a finer --resolution or another --scene")]
+    NoSurface,
+    /// A length that is not positive.
+    #[error("a {name} of {value} is not possible; give a positive length")]
+    Length {
+        /// What it is a length of.
+        name: &'static str,
+        /// The value.
+        value: f64,
+    },
+    /// The fit failed.
+    #[error(transparent)]
+    Fit(#[from] FitError),
+    /// The monitor asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}

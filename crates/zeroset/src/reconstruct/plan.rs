@@ -1,0 +1,257 @@
+//! Every default resolved against the cloud.
+
+use serde::Serialize;
+
+use super::scene::SceneEvidence;
+use super::{ReconstructError, Up};
+use crate::cloud::{Cloud, Spacing};
+use crate::domain::LatticeError;
+use crate::fit::{FitError, FitParams, Prepared, Scene};
+use crate::monitor::{Monitor, check};
+
+/// How fine the lattice is.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Resolution {
+    /// From the spacing of the points, made coarser where memory asks for it.
+    #[default]
+    Auto,
+    /// A length in the unit of the cloud.
+    Length(f64),
+    /// The longest side of the padded box is cut into 2^depth cells.
+    Depth(u32),
+}
+
+/// Which surface is dropped because it lies far from the data.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Trim {
+    /// Terrain and airborne scenes: a multiple of the spacing. Objects: off.
+    #[default]
+    Auto,
+    /// Nothing is dropped.
+    Off,
+    /// Surface farther than this from the data. In terrain and airborne scenes distance is measured in the ground plane and the
+    /// surface also ends at the outline of the data.
+    Length(f64),
+}
+
+/// Which values of the points the vertices get.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum AttributeChoice {
+    /// None.
+    Off,
+    /// Colour, where the cloud has it.
+    #[default]
+    Rgb,
+    /// Intensity, where the cloud has it.
+    Intensity,
+    /// Class, where the cloud has it.
+    Class,
+}
+
+/// What to reconstruct, and how.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ReconstructParams {
+    /// The scene; `None` decides from the shape of the cloud.
+    pub scene: Option<Scene>,
+    /// Which way is up.
+    pub up: Up,
+    /// How fine.
+    pub resolution: Resolution,
+    /// Weight of the data term; see [`FitParams`].
+    pub screening: f64,
+    /// What is dropped far from the data.
+    pub trim: Trim,
+    /// Values for the vertices.
+    pub attributes: AttributeChoice,
+    /// Most bytes to use; the automatic resolution keeps within it and a given one is refused beyond it.
+    pub memory: u64,
+}
+
+impl Default for ReconstructParams {
+    fn default() -> Self {
+        Self {
+            scene: None,
+            up: Up::default(),
+            resolution: Resolution::default(),
+            screening: FitParams::SCREENING,
+            trim: Trim::default(),
+            attributes: AttributeChoice::default(),
+            memory: 16 << 30,
+        }
+    }
+}
+
+/// The automatic resolution over the spacing of the points.
+///
+/// Below about 1.2 noise and gaps show in the surface; above 2 detail that the points bear is lost.
+const RESOLUTION_REL: f64 = 1.5;
+/// The automatic trim of open scenes over the spacing of the points: bridges canals and the shadows of buildings.
+const TRIM_REL: f64 = 50.0;
+/// Fewer points never make a surface.
+const LEAST_POINTS: usize = 8;
+/// Peak bytes of a whole run for each occupied cell of the finest level, and for each point; measured on airborne clouds.
+const BYTES_A_CELL: f64 = 2600.0;
+const BYTES_A_POINT: f64 = 90.0;
+/// A box wider than this many spacings holds stray points: 10^9 points would not fill its diagonal plane.
+const ASTRAY: f64 = 1e6;
+
+/// What a reconstruction will do, before it is done.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PlanReport {
+    /// Points used.
+    pub points: usize,
+    /// Box of the points in world coordinates: lowest and highest corner.
+    pub bounds: [[f64; 3]; 2],
+    /// Measured spacing of the points.
+    pub spacing: f64,
+    /// The scene.
+    pub scene: Scene,
+    /// Why this scene.
+    pub scene_reason: String,
+    /// Which way is up.
+    pub up: Up,
+    /// Spacing of the finest lattice.
+    pub resolution: f64,
+    /// Whether memory made the automatic resolution coarser than the spacing asks for.
+    pub capped_by_memory: bool,
+    /// Number of levels.
+    pub levels: u32,
+    /// Cells of the finest level that hold points.
+    pub occupied_cells: usize,
+    /// Nodes of the finest level to be solved for, expected.
+    pub expected_nodes: u64,
+    /// Peak memory in bytes, expected.
+    pub expected_bytes: u64,
+    /// Length beyond which surface is dropped.
+    pub trim: Option<f64>,
+    /// Weight of the data term.
+    pub screening: f64,
+    /// Values for the vertices.
+    pub attributes: AttributeChoice,
+}
+
+/// A resolved plan, ready to run.
+#[derive(Debug)]
+pub struct Plan<'a> {
+    /// What it will do.
+    pub report: PlanReport,
+    pub(super) cloud: &'a Cloud,
+    pub(super) prepared: Prepared,
+    /// Seconds spent on planning.
+    pub(super) seconds: f64,
+}
+
+/// Resolves every default against the cloud. Points must be finite.
+///
+/// # Errors
+/// If the points bear no surface, or the resolution asked for is impossible or needs too much memory.
+pub fn plan<'a>(
+    cloud: &'a Cloud,
+    params: &ReconstructParams,
+    monitor: &dyn Monitor,
+) -> Result<Plan<'a>, ReconstructError> {
+    let start = std::time::Instant::now();
+    monitor.stage("measuring the points");
+    if cloud.len() < LEAST_POINTS {
+        return Err(ReconstructError::TooFewPoints { found: cloud.len(), needed: LEAST_POINTS });
+    }
+    let upright: Vec<[f64; 3]> = cloud.points.iter().map(|&p| params.up.upright(p)).collect();
+    let spacing = Spacing::of(cloud).ok_or(ReconstructError::Degenerate { shape: "in one place" })?.median;
+    if on_one_line(&upright) {
+        return Err(ReconstructError::Degenerate { shape: "on one line" });
+    }
+    let (low, high) = bounds(&cloud.points);
+    let extent = (0..3).map(|a| high[a] - low[a]).fold(0.0, f64::max);
+    if params.resolution == Resolution::Auto && extent > ASTRAY * spacing {
+        return Err(ReconstructError::Astray { extent, spacing });
+    }
+    check(monitor)?;
+    let (scene, scene_reason) = params
+        .scene
+        .map_or_else(|| SceneEvidence::of(&upright, spacing).verdict(), |scene| (scene, "asked for".to_owned()));
+    let fit = |resolution| FitParams { screening: params.screening, ..FitParams::new(scene, resolution) };
+    let wanted = match params.resolution {
+        Resolution::Auto => RESOLUTION_REL * spacing,
+        Resolution::Length(length) if length.is_finite() && length > 0.0 => length,
+        Resolution::Length(value) => return Err(ReconstructError::Length { name: "resolution", value }),
+        Resolution::Depth(depth) => {
+            (1.0 + 2.0 * FitParams::PADDING_REL) * extent / 2.0_f64.powi(i32::try_from(depth).unwrap_or(i32::MAX))
+        }
+    };
+    monitor.stage("sorting the points");
+    let mut resolution = wanted;
+    let prepared = loop {
+        let prepared = Prepared::new(&upright, &fit(resolution)).map_err(FitError::from)?;
+        check(monitor)?;
+        let needed = expected_bytes(prepared.occupied_cells(), cloud.len());
+        if needed <= params.memory as f64 {
+            break prepared;
+        }
+        // The surface has dimension two, so cells fall with the square of the spacing.
+        let factor = (needed / params.memory as f64).sqrt().max(1.05);
+        if params.resolution != Resolution::Auto {
+            let gb = |bytes: f64| bytes / 1e9;
+            return Err(ReconstructError::Memory {
+                resolution,
+                needed_gb: gb(needed),
+                allowed_gb: gb(params.memory as f64),
+                possible: resolution * factor,
+            });
+        }
+        resolution *= factor;
+        if resolution > extent {
+            return Err(FitError::from(LatticeError::Spacing(resolution)).into());
+        }
+    };
+    let trim = match (params.trim, scene) {
+        (Trim::Off, _) | (Trim::Auto, Scene::Object | Scene::Free) => None,
+        (Trim::Auto, Scene::Terrain | Scene::Airborne) => Some((TRIM_REL * spacing).max(8.0 * resolution)),
+        (Trim::Length(length), _) if length.is_finite() && length > 0.0 => Some(length),
+        (Trim::Length(value), _) => return Err(ReconstructError::Length { name: "trim", value }),
+    };
+    let offset = cloud.world_from_local;
+    let occupied_cells = prepared.occupied_cells();
+    let report = PlanReport {
+        points: cloud.len(),
+        bounds: [low, high].map(|corner| std::array::from_fn(|a| corner[a] + offset[a])),
+        spacing,
+        scene,
+        scene_reason,
+        up: params.up,
+        resolution,
+        capped_by_memory: resolution > wanted,
+        levels: prepared.levels(),
+        occupied_cells,
+        expected_nodes: 14 * occupied_cells as u64,
+        expected_bytes: expected_bytes(occupied_cells, cloud.len()) as u64,
+        trim,
+        screening: params.screening,
+        attributes: params.attributes,
+    };
+    Ok(Plan { report, cloud, prepared, seconds: start.elapsed().as_secs_f64() })
+}
+
+fn expected_bytes(cells: usize, points: usize) -> f64 {
+    BYTES_A_CELL * cells as f64 + BYTES_A_POINT * points as f64
+}
+
+fn bounds(points: &[[f64; 3]]) -> ([f64; 3], [f64; 3]) {
+    points.iter().fold(([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]), |(low, high), p| {
+        (std::array::from_fn(|a| low[a].min(p[a])), std::array::from_fn(|a| high[a].max(p[a])))
+    })
+}
+
+/// Whether all points lie on one line, but for rounding: the second eigenvalue of their covariance is nothing against the first.
+fn on_one_line(points: &[[f64; 3]]) -> bool {
+    let n = points.len() as f64;
+    let mean: [f64; 3] = std::array::from_fn(|a| points.iter().map(|p| p[a]).sum::<f64>() / n);
+    let mut covariance = nalgebra::Matrix3::<f64>::zeros();
+    for p in points {
+        let d = nalgebra::Vector3::from_fn(|a, _| p[a] - mean[a]);
+        covariance += d * d.transpose();
+    }
+    let mut eigenvalues: Vec<f64> = covariance.symmetric_eigenvalues().iter().copied().collect();
+    eigenvalues.sort_by(f64::total_cmp);
+    eigenvalues[1] <= 1e-12 * eigenvalues[2]
+}
