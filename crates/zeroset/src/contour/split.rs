@@ -34,9 +34,9 @@ pub(super) fn split_fans(mesh: &mut Mesh) -> usize {
         }
         let fans = label_fans(&old, star, v as u32, &mut fan);
         for (&t, &f) in star.iter().zip(&fan) {
-            for corner in 0..3 {
-                if old[t as usize][corner] == v as u32 {
-                    mesh.triangles[t as usize][corner] = (vertices.len() + f) as u32;
+            for (corner, &was) in mesh.triangles[t as usize].iter_mut().zip(&old[t as usize]) {
+                if was == v as u32 {
+                    *corner = (vertices.len() + f) as u32;
                 }
             }
         }

@@ -72,7 +72,7 @@ impl Lattice {
             let whole = f64::from(blocks[a] * 8 - 1) * coarse;
             0.5 * (low[a] + high[a]) - 0.5 * whole
         });
-        let nodes = blocks.into_iter().max().unwrap_or(1) * 8 << finest;
+        let nodes = (blocks.into_iter().max().unwrap_or(1) * 8) << finest;
         let node_bits = nodes.next_power_of_two().trailing_zeros();
         if node_bits > MAX_NODE_BITS {
             return Err(too_fine());

@@ -74,7 +74,7 @@ fn splat_block(halo: &Halo<f32>, samples: &[Sample], splat: &mut Splat) -> f64 {
     for sample in samples {
         let g = recovered_gradient(halo, sample);
         let length = (g[0] * g[0] + g[1] * g[1] + g[2] * g[2]).sqrt();
-        if !(length > 0.0) {
+        if length <= 0.0 {
             continue;
         }
         sum += f64::from(sample.weight * length);

@@ -33,7 +33,7 @@ pub(super) fn conjugate_gradients<T: Real>(
     let mut steps = 0;
     while steps < params.max_steps && rr.sqrt() > params.tolerance * scale && rz > 0.0 {
         let pq = apply(level, p, q);
-        if !(pq > 0.0) {
+        if pq <= 0.0 || pq.is_nan() {
             break;
         }
         let old = rz;
