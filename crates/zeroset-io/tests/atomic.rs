@@ -5,7 +5,7 @@ mod common;
 use std::io::Write;
 
 use common::folder;
-use zeroset_io::{IoError, abandon_writes, write_atomically};
+use zeroset_io::{IoError, write_atomically};
 
 fn entries(folder: &tempfile::TempDir) -> usize {
     std::fs::read_dir(folder.path()).unwrap().count()
@@ -50,21 +50,6 @@ fn a_panic_leaves_no_litter() {
     let caught = std::panic::catch_unwind(|| write_atomically::<IoError>(&path, |_| panic!("in the middle")));
     assert!(caught.is_err());
     assert_eq!(entries(&folder), 0);
-}
-
-#[test]
-fn an_abandoned_write_leaves_no_litter() {
-    let folder = folder();
-    let path = folder.path().join("report.json");
-    std::fs::write(&path, "old").unwrap();
-    let result = write_atomically::<IoError>(&path, |_| {
-        assert_eq!(entries(&folder), 2);
-        abandon_writes();
-        assert_eq!(entries(&folder), 1);
-        Ok(())
-    });
-    assert!(result.is_err());
-    assert_eq!(std::fs::read_to_string(&path).unwrap(), "old");
 }
 
 #[cfg(unix)]

@@ -411,3 +411,61 @@ fn bad_outputs() {
         assert!(assert_message(&write(&link), "full.ply").contains("disk is full"));
     }
 }
+
+/// Checksum of E57 pages (CRC-32C), bit by bit.
+fn crc32c(bytes: &[u8]) -> u32 {
+    let step = |crc: u32| if crc & 1 == 1 { crc >> 1 ^ 0x82F6_3B78 } else { crc >> 1 };
+    !bytes.iter().fold(u32::MAX, |crc, byte| (0..8).fold(crc ^ u32::from(*byte), |crc, _| step(crc)))
+}
+
+/// An E57 file of a header, XML and sound checksums.
+fn e57_of_xml(xml: &str) -> Vec<u8> {
+    const PAGE: usize = 1020;
+    let pages = (48 + xml.len()).div_ceil(PAGE) as u64;
+    let mut plain = b"ASTM-E57".to_vec();
+    plain.extend([1_u32, 0].iter().flat_map(|v| v.to_le_bytes()));
+    plain.extend([pages * 1024, 48, xml.len() as u64, 1024].iter().flat_map(|v| v.to_le_bytes()));
+    plain.extend(xml.bytes());
+    plain.resize(pages as usize * PAGE, 0);
+    plain.chunks(PAGE).flat_map(|page| [page, &crc32c(page).to_be_bytes()].concat()).collect()
+}
+
+#[test]
+fn e57_with_hostile_xml() {
+    let depth = 200_000;
+    let nested = format!("<e57Root>{}{}</e57Root>", "<a>".repeat(depth), "</a>".repeat(depth));
+    let entities = "<!DOCTYPE r [<!ENTITY a \"aaaaaaaaaa\"><!ENTITY b \"&a;&a;&a;&a;&a;&a;&a;&a;&a;&a;\">\
+        <!ENTITY c \"&b;&b;&b;&b;&b;&b;&b;&b;&b;&b;\"><!ENTITY d \"&c;&c;&c;&c;&c;&c;&c;&c;&c;&c;\">\
+        <!ENTITY e \"&d;&d;&d;&d;&d;&d;&d;&d;&d;&d;\">]><e57Root>&e;&e;&e;&e;</e57Root>";
+    let root = |prototype: &str, records: &str| {
+        format!(
+            "<?xml version=\"1.0\"?><e57Root type=\"Structure\" xmlns=\"http://www.astm.org/COMMIT/E57/2010-e57-v1.0\">\
+             <formatName type=\"String\">ASTM E57 3D Imaging Data File</formatName><guid type=\"String\">a</guid>\
+             <versionMajor type=\"Integer\">1</versionMajor><versionMinor type=\"Integer\">0</versionMinor>\
+             <data3D type=\"Vector\"><vectorChild type=\"Structure\"><guid type=\"String\">b</guid>\
+             <points type=\"CompressedVector\" fileOffset=\"48\" recordCount=\"{records}\">\
+             <prototype type=\"Structure\">{prototype}</prototype><codecs type=\"Vector\"/></points>\
+             </vectorChild></data3D></e57Root>"
+        )
+    };
+    let constant =
+        ["X", "Y", "Z"].map(|axis| format!("<cartesian{axis} type=\"Integer\" minimum=\"1\" maximum=\"1\"/>")).concat();
+    let float = ["X", "Y", "Z"].map(|axis| format!("<cartesian{axis} type=\"Float\"/>")).concat();
+    let wide = ["X", "Y", "Z"].map(|axis| format!("<cartesian{axis} type=\"Integer\"/>")).concat();
+    for (what, xml, part) in [
+        ("nested elements", nested, ""),
+        ("entities", entities.to_string(), ""),
+        ("no scans", "<e57Root/>".into(), ""),
+        ("constant fields", root(&constant, "1000"), "only constant fields"),
+        ("count 2^32", root(&float, "4294967296"), "promises 4294967296 points"),
+        ("count -1", root(&float, "-1"), ""),
+        ("no data", root(&float, "3"), "E57 data cannot be decoded"),
+        ("widest integers", root(&wide, "3"), ""),
+        ("no coordinates", root("<intensity type=\"Float\"/>", "3"), "neither Cartesian nor spherical"),
+    ] {
+        let error = cloud("e57", &e57_of_xml(&xml)).map(|file| file.report).unwrap_err();
+        let text = assert_message(&error, "bad.e57");
+        println!("{what:18} {text}");
+        assert!(text.contains(part), "{what}: {text}");
+    }
+}

@@ -65,15 +65,15 @@ pub(super) fn parse_block(
     const SHORT_LINE: usize = 16;
     let mut block = Block { points: Vec::with_capacity(piece.len() / SHORT_LINE), ..Block::default() };
     let width = layout.width();
-    let simple = width == 3 && layout.position == [0, 1, 2];
     let mut tokens: Vec<&[u8]> = Vec::with_capacity(width);
+    let mut values = vec![0.0; width];
     for (line, content) in piece.split(|b| *b == line_end).enumerate() {
         let content = trimmed(content);
         if content.is_empty() || is_comment(content) {
             continue;
         }
-        if simple && let Some(point) = three_numbers(content) {
-            block.points.push(point);
+        if plain_numbers(content, &mut values) {
+            block.push(layout, &values);
             continue;
         }
         let line = line as u64;
@@ -98,35 +98,53 @@ pub(super) fn parse_block(
             })
         };
         // Beside the position an empty field or a word is only a missing value.
-        let optional = |column: usize| number(column).unwrap_or(0.0) as f32;
-        let [x, y, z] = layout.position;
-        block.points.push([number(x)?, number(y)?, number(z)?]);
-        block.colors.extend(layout.color.map(|color| color.map(optional)));
-        block.intensities.extend(layout.intensity.map(optional));
-        block.classes.extend(layout.class.map(optional));
+        for (column, value) in values.iter_mut().enumerate() {
+            *value = if layout.position.contains(&column) { number(column)? } else { number(column).unwrap_or(0.0) };
+        }
+        block.push(layout, &values);
     }
     Ok(block)
 }
 
-/// The quick way for the most common line: three numbers and separators. `None` if there is anything unusual.
+impl Block {
+    #[inline]
+    fn push(&mut self, layout: &Layout, values: &[f64]) {
+        self.points.push(layout.position.map(|at| values[at]));
+        self.colors.extend(layout.color.map(|color| color.map(|at| values[at] as f32)));
+        self.intensities.extend(layout.intensity.map(|at| values[at] as f32));
+        self.classes.extend(layout.class.map(|at| values[at] as f32));
+    }
+}
+
+/// The quick way for the most common lines: numbers with one kind of separator. `false` if there is anything unusual.
 #[inline]
-fn three_numbers(mut line: &[u8]) -> Option<[f64; 3]> {
-    let mut point = [0.0; 3];
-    for (axis, value) in point.iter_mut().enumerate() {
-        let (number, length) = fast_float2::parse_partial::<f64, _>(line).ok()?;
+fn plain_numbers(mut line: &[u8], values: &mut [f64]) -> bool {
+    let last = values.len() - 1;
+    let mut separator = None;
+    for (i, value) in values.iter_mut().enumerate() {
+        let Ok((number, length)) = fast_float2::parse_partial::<f64, _>(line) else { return false };
         *value = number;
         line = &line[length..];
-        match line.first() {
-            None if axis == 2 => {}
-            Some(b' ' | b'\t') => line = line.trim_ascii_start(),
-            _ => return None,
+        let found = match line.first() {
+            None => return i == last,
+            Some(b' ' | b'\t') => {
+                line = line.trim_ascii_start();
+                b' '
+            }
+            Some(mark @ (b',' | b';')) => {
+                line = &line[1..];
+                *mark
+            }
+            Some(_) => return false,
+        };
+        // Two kinds may mean a decimal comma, and two in a row an empty field: the slow way knows.
+        let double = matches!(line.first(), Some(b',' | b';' | b' ' | b'\t'));
+        if double || separator.is_some_and(|separator| separator != found) {
+            return false;
         }
-        // A comma or semicolon here belongs to an empty field or a mixed separator: the slow way knows.
-        if matches!(line.first(), Some(b',' | b';')) {
-            return None;
-        }
+        separator = Some(found);
     }
-    Some(point)
+    true
 }
 
 /// A line without the space around it.
@@ -210,10 +228,16 @@ mod tests {
 
     #[test]
     fn the_quick_way_agrees_or_declines() {
-        assert_eq!(three_numbers(b"1 2\t3"), Some([1.0, 2.0, 3.0]));
-        assert_eq!(three_numbers(b"1  2.5e3  -3 junk"), Some([1.0, 2500.0, -3.0]));
-        for line in ["1,2,3", "1 2", "1 2 x", "1 ,2 3", "1 2 3x", "1 2 3;4"] {
-            assert_eq!(three_numbers(line.as_bytes()), None, "{line}");
+        let quick = |line: &str| {
+            let mut values = [0.0; 3];
+            plain_numbers(line.as_bytes(), &mut values).then_some(values)
+        };
+        assert_eq!(quick("1 2\t3"), Some([1.0, 2.0, 3.0]));
+        assert_eq!(quick("1  2.5e3  -3 junk"), Some([1.0, 2500.0, -3.0]));
+        assert_eq!(quick("1,2,3"), Some([1.0, 2.0, 3.0]));
+        assert_eq!(quick("1;2;3;x"), Some([1.0, 2.0, 3.0]));
+        for line in ["1, 2, 3", "1 2", "1 2 x", "1 ,2 3", "1 2 3x", "1 2 3;4", "1,5 2,5 3,5", "1,5;2,5;3,5", "1,,3"] {
+            assert_eq!(quick(line), None, "{line}");
         }
     }
 
