@@ -1,3 +1,7 @@
-//! The `zeroset` command.
+//! The `zeroset` command. All it does is in the library of the same package.
 
-fn main() {}
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    zeroset_cli::main(std::env::args_os())
+}

@@ -265,8 +265,9 @@ impl IoError {
     }
 }
 
-/// A path as one line of text; `-` is shown as what it stands for.
-fn shown(path: &Path) -> String {
+/// A path as one line of text without control characters; `-` is shown as what it stands for.
+#[must_use]
+pub fn shown(path: &Path) -> String {
     if path == Path::new("-") { "standard stream".into() } else { clean(&path.display().to_string()) }
 }
 

@@ -35,11 +35,11 @@ mod number;
 mod output;
 mod ply;
 
-pub use cloud::{CloudFile, LinearUnit, ReadReport, read_cloud, read_cloud_bytes, read_clouds, write_cloud};
-pub use error::IoError;
+pub use cloud::{CloudFile, LinearUnit, ReadReport, Source, read_cloud, read_cloud_bytes, read_clouds, write_cloud};
+pub use error::{IoError, shown};
 pub use format::{CloudFormat, MeshFormat};
 pub use mesh::{WriteOptions, WriteReport, read_mesh, read_mesh_bytes, write_mesh};
-pub use output::{abandon_writes, write_atomically};
+pub use output::{abandon_writes, check_writable, write_atomically};
 
 /// The largest coordinate that is read or written, in the unit of the file.
 ///

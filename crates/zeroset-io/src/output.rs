@@ -1,6 +1,6 @@
 //! Bytes out: all or nothing.
 
-use std::fs::Permissions;
+use std::fs::{Metadata, Permissions};
 use std::io::{BufWriter, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
@@ -61,26 +61,13 @@ where
     E: From<IoError>,
 {
     let failed = |source| E::from(IoError::from_system(path, source));
-    if path.is_dir() {
-        return Err(IoError::IsDirectory { path: path.to_path_buf() }.into());
-    }
-    let target = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
-    let old = std::fs::metadata(&target).ok();
+    let Place { target, old, folder } = Place::of(path)?;
     if old.as_ref().is_some_and(|old| !old.is_file()) {
         let file = std::fs::OpenOptions::new().write(true).open(&target).map_err(failed)?;
         let mut writer = BufWriter::with_capacity(BUFFER, file);
         fill(&mut writer)?;
         writer.flush().map_err(failed)?;
         return Ok(0);
-    }
-    // Renaming needs no right to write to the file itself, but a file that its owner protected is not to be replaced.
-    if old.as_ref().is_some_and(|old| old.permissions().readonly()) {
-        return Err(IoError::PermissionDenied { path: path.to_path_buf() }.into());
-    }
-
-    let folder = folder_of(&target);
-    if !folder.is_dir() {
-        return Err(IoError::FolderMissing { path: path.to_path_buf(), folder }.into());
     }
     let mut builder = tempfile::Builder::new();
     builder.prefix(".zeroset-").suffix(".tmp");
@@ -103,6 +90,54 @@ where
     drop(file);
     temporary.persist(&target).map_err(|e| failed(e.error))?;
     Ok(bytes)
+}
+
+/// Where a file is to be written.
+struct Place {
+    /// The file, with links followed.
+    target: PathBuf,
+    /// What is there now.
+    old: Option<Metadata>,
+    /// The folder that holds it.
+    folder: PathBuf,
+}
+
+impl Place {
+    /// Finds out what can be known before anything is written.
+    fn of(path: &Path) -> Result<Self, IoError> {
+        if path.is_dir() {
+            return Err(IoError::IsDirectory { path: path.to_path_buf() });
+        }
+        let target = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
+        let old = std::fs::metadata(&target).ok();
+        // Renaming needs no right to write to the file itself, but a file that its owner protected is not to be
+        // replaced.
+        if old.as_ref().is_some_and(|old| old.is_file() && old.permissions().readonly()) {
+            return Err(IoError::PermissionDenied { path: path.to_path_buf() });
+        }
+        let folder = folder_of(&target);
+        if !folder.is_dir() {
+            return Err(IoError::FolderMissing { path: path.to_path_buf(), folder });
+        }
+        Ok(Self { target, old, folder })
+    }
+}
+
+/// Whether [`write_atomically`] can be expected to succeed, for a command that works for long before it writes.
+///
+/// The old file stays as it is and no new one appears: a nameless file is made in the folder and given up at once.
+///
+/// # Errors
+/// The folder is missing or may not be written to, the path is a folder, or the file is protected.
+pub fn check_writable(path: &Path) -> Result<(), IoError> {
+    let failed = |source| IoError::from_system(path, source);
+    let Place { target, old, folder } = Place::of(path)?;
+    if old.is_some_and(|old| !old.is_file()) {
+        std::fs::OpenOptions::new().write(true).open(target).map_err(failed)?;
+    } else {
+        tempfile::tempfile_in(folder).map_err(failed)?;
+    }
+    Ok(())
 }
 
 /// Like [`write_atomically`] with errors of the system put into their place, for the formats of this crate.

@@ -402,7 +402,7 @@ fn several_files_become_one_cloud() {
     assert_near(&world(all.cloud.world_from_local, &all.cloud.points), &expected, 0.000_501);
     assert_eq!(all.cloud.attributes, Default::default());
     assert_eq!(all.report.attributes_left_out, ["colors", "intensities", "classes"]);
-    assert_eq!((all.report.inputs, all.report.points_read, all.report.points_declared), (3, 9, None));
+    assert_eq!((all.report.sources.len(), all.report.points_read, all.report.points_declared), (3, 9, None));
     assert!(all.report.notes.iter().any(|n| n.contains("another reference system")), "{:?}", all.report.notes);
     assert_eq!(all.cloud.crs.as_deref(), Some("EPSG:28992"));
 

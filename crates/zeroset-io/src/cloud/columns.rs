@@ -4,7 +4,7 @@ use std::path::Path;
 
 use zeroset::cloud::Attributes;
 
-use super::report::{LinearUnit, ReadReport, WorldCloud};
+use super::report::{LinearUnit, ReadReport, Source, WorldCloud};
 use crate::{CloudFormat, IoError, MAX_COORDINATE};
 
 /// Points as a file holds them: world coordinates, nothing left out yet.
@@ -57,12 +57,13 @@ impl Columns {
         }
         check_size(path, "point", &self.points)?;
 
+        let (points_read, non_finite) = (self.points.len() as u64, non_finite + self.invalid);
         let report = ReadReport {
             format,
-            inputs: 1,
+            sources: vec![Source { path: path.to_path_buf(), format, points: points_read, non_finite, withheld }],
             points_declared: self.declared,
-            points_read: self.points.len() as u64,
-            non_finite: non_finite + self.invalid,
+            points_read,
+            non_finite,
             withheld,
             unit: self.unit,
             crs: self.crs.clone(),

@@ -11,7 +11,7 @@ mod write;
 
 use std::path::{Path, PathBuf};
 
-pub use report::{CloudFile, LinearUnit, ReadReport};
+pub use report::{CloudFile, LinearUnit, ReadReport, Source};
 pub use write::write_cloud;
 
 use crate::input::read_file;

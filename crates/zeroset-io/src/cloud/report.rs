@@ -1,6 +1,6 @@
 //! What was read, and what there is to say about it.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use zeroset::cloud::{Attributes, Cloud};
 
@@ -52,14 +52,30 @@ impl LinearUnit {
     }
 }
 
+/// One of the files that a cloud was read from.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Source {
+    /// The file; `-` is standard input.
+    pub path: PathBuf,
+    /// Its format.
+    pub format: CloudFormat,
+    /// Points that the cloud has of it.
+    pub points: u64,
+    /// Points left out because they are not finite or marked as invalid.
+    pub non_finite: u64,
+    /// Points left out because they are marked as withheld.
+    pub withheld: u64,
+}
+
 /// What reading a cloud found out.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct ReadReport {
     /// The format; of the first input if there were several.
     pub format: CloudFormat,
-    /// How many files were read.
-    pub inputs: usize,
+    /// The files that were read, in the order given.
+    pub sources: Vec<Source>,
     /// How many points the files state, where they do.
     pub points_declared: Option<u64>,
     /// How many points the cloud has.
@@ -133,7 +149,7 @@ impl WorldCloud {
             )),
             (first, unit) => report.unit = first.or(unit),
         }
-        report.inputs += other.inputs;
+        report.sources.extend(other.sources);
         // A total is only stated if every input states its part.
         report.points_declared = report.points_declared.zip(other.points_declared).map(|(a, b)| a.saturating_add(b));
         report.points_read += other.points_read;

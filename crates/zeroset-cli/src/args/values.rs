@@ -1,0 +1,156 @@
+//! Values with a shape of their own.
+
+use std::num::NonZeroUsize;
+
+/// ASPRS classes.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Classes(pub Vec<u8>);
+
+/// A box of world coordinates: the lowest and highest value on each axis, infinite where it is open.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bounds(pub [[f64; 2]; 3]);
+
+/// Whether strays are dropped.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Outliers {
+    /// No.
+    Off,
+    /// Groups of up to so many points.
+    Groups(NonZeroUsize),
+}
+
+/// How far from the points surface may lie.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum TrimChoice {
+    /// Anywhere.
+    Off,
+    /// At most this far.
+    Length(f64),
+}
+
+fn number(text: &str) -> Result<f64, String> {
+    let value: f64 = text.trim().parse().map_err(|_| format!("`{text}` is not a number"))?;
+    if value.is_finite() { Ok(value) } else { Err("a finite number is needed".into()) }
+}
+
+pub(super) fn positive(text: &str) -> Result<f64, String> {
+    number(text).and_then(|v| if v > 0.0 { Ok(v) } else { Err("it must be greater than 0".into()) })
+}
+
+pub(super) fn not_negative(text: &str) -> Result<f64, String> {
+    number(text).and_then(|v| if v >= 0.0 { Ok(v) } else { Err("it must not be negative".into()) })
+}
+
+/// Degrees, as typed.
+pub(super) fn sharp_angle(text: &str) -> Result<f64, String> {
+    positive(text).and_then(|v| if v < 180.0 { Ok(v) } else { Err("it must be less than 180".into()) })
+}
+
+pub(super) fn classes(text: &str) -> Result<Classes, String> {
+    let class = |word: &str| {
+        let word = word.trim();
+        word.parse().map_err(|_| format!("`{word}` is no class; classes are whole numbers from 0 to 255, as in 2,6,9"))
+    };
+    text.split(',').map(class).collect::<Result<_, _>>().map(Classes)
+}
+
+pub(super) fn excluded(text: &str) -> Result<Classes, String> {
+    if text == "none" { Ok(Classes(Vec::new())) } else { classes(text) }
+}
+
+pub(super) fn bounds(text: &str) -> Result<Bounds, String> {
+    let values = text.split(',').map(number).collect::<Result<Vec<_>, _>>()?;
+    let open = [f64::NEG_INFINITY, f64::INFINITY];
+    let sides = match values[..] {
+        [x0, y0, x1, y1] => [[x0, x1], [y0, y1], open],
+        [x0, y0, x1, y1, z0, z1] => [[x0, x1], [y0, y1], [z0, z1]],
+        _ => return Err(format!("4 or 6 numbers are needed, {} were given", values.len())),
+    };
+    for (axis, [low, high]) in ["x", "y", "z"].iter().zip(sides) {
+        if low > high {
+            return Err(format!("{axis}min is greater than {axis}max; the order is xmin,ymin,xmax,ymax[,zmin,zmax]"));
+        }
+    }
+    Ok(Bounds(sides))
+}
+
+pub(super) fn outliers(text: &str) -> Result<Outliers, String> {
+    if text == "off" {
+        return Ok(Outliers::Off);
+    }
+    let groups = text.parse().ok().filter(|k: &NonZeroUsize| k.get() <= 1000);
+    groups.map(Outliers::Groups).ok_or_else(|| "`off` or a whole number from 1 to 1000 is needed".into())
+}
+
+pub(super) fn trim(text: &str) -> Result<TrimChoice, String> {
+    if text == "off" { Ok(TrimChoice::Off) } else { positive(text).map(TrimChoice::Length) }
+}
+
+pub(super) fn threads(text: &str) -> Result<NonZeroUsize, String> {
+    let threads = text.parse().ok().filter(|n: &NonZeroUsize| n.get() <= 1024);
+    threads.ok_or_else(|| "a whole number from 1 to 1024 is needed".into())
+}
+
+/// Bytes: `4GB`, `4 GiB`, `500M`, `1e9`.
+pub(super) fn size(text: &str) -> Result<u64, String> {
+    const UNITS: [(&str, f64); 13] = [
+        ("kib", 1024.0),
+        ("mib", 1_048_576.0),
+        ("gib", 1_073_741_824.0),
+        ("tib", 1_099_511_627_776.0),
+        ("kb", 1e3),
+        ("mb", 1e6),
+        ("gb", 1e9),
+        ("tb", 1e12),
+        ("k", 1e3),
+        ("m", 1e6),
+        ("g", 1e9),
+        ("t", 1e12),
+        ("b", 1.0),
+    ];
+    let lower = text.trim().to_ascii_lowercase();
+    let with_unit = UNITS.iter().find_map(|(unit, bytes)| Some((lower.strip_suffix(unit)?, *bytes)));
+    let (digits, unit) = with_unit.unwrap_or((&lower, 1.0));
+    let bytes = positive(digits).map_err(|why| format!("{why}; give a size such as 500MB or 4GB"))? * unit;
+    // A plain number is more likely meant in another unit than in bytes.
+    if bytes < 1e6 {
+        Err("less than 1 MB is never enough; give a size such as 500MB or 4GB".into())
+    } else {
+        Ok(bytes as u64)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_in_every_unit() {
+        for (text, bytes) in
+            [("4GB", 4_000_000_000), ("4g", 4_000_000_000), ("0.5 GiB", 536_870_912), ("2000000", 2_000_000)]
+        {
+            assert_eq!(size(text), Ok(bytes), "{text}");
+        }
+        for text in ["", "GB", "-1GB", "4", "nan", "4 PB", "infGB"] {
+            assert!(size(text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn bounds_with_and_without_heights() {
+        assert_eq!(bounds("-1,-2,3.5,4").map(|b| b.0[0]), Ok([-1.0, 3.5]));
+        assert_eq!(bounds("-1, -2, 3, 4, -5, 6").map(|b| b.0[2]), Ok([-5.0, 6.0]));
+        for text in ["", "1,2,3", "1,2,3,4,5", "3,0,1,1", "a,b,c,d", "0,0,nan,1"] {
+            assert!(bounds(text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn classes_are_lists() {
+        assert_eq!(classes("2, 6,9"), Ok(Classes(vec![2, 6, 9])));
+        assert_eq!(excluded("none"), Ok(Classes(vec![])));
+        for text in ["", "256", "-1", "2;6", "ground"] {
+            assert!(classes(text).is_err(), "{text}");
+        }
+    }
+}

@@ -1,0 +1,44 @@
+//! Lines on standard error and text on standard output.
+
+use std::io::Write;
+
+use crate::error::CliError;
+
+/// How much to say beside results and errors.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Console {
+    /// Nothing.
+    Quiet,
+    /// What was decided and done.
+    Normal,
+    /// Every figure.
+    Verbose,
+}
+
+impl Console {
+    /// A line for a user who did not ask for quiet.
+    pub(crate) fn say(self, line: &str) {
+        if self >= Self::Normal {
+            Self::complain(line);
+        }
+    }
+
+    /// A line for a user who asked for all of it.
+    pub(crate) fn detail(self, line: &str) {
+        if self >= Self::Verbose {
+            Self::complain(line);
+        }
+    }
+
+    /// A line for every user.
+    pub(crate) fn complain(line: &str) {
+        // Nobody is left to tell if standard error is closed.
+        let _ = writeln!(std::io::stderr().lock(), "{line}");
+    }
+
+    /// Text that was asked for, to standard output.
+    pub(crate) fn print(text: &str) -> Result<(), CliError> {
+        let mut out = std::io::stdout().lock();
+        out.write_all(text.as_bytes()).and_then(|()| out.flush()).map_err(CliError::Stdout)
+    }
+}

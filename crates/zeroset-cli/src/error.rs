@@ -1,0 +1,100 @@
+//! Why a command failed, in one line.
+
+use std::path::{Path, PathBuf};
+
+use zeroset::mesh::{CompareError, MeshError};
+use zeroset::reconstruct::ReconstructError;
+use zeroset_io::{IoError, shown};
+
+/// Why a command failed. The message names the file and the remedy.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum CliError {
+    /// A file could not be read or written.
+    #[error(transparent)]
+    Io(#[from] IoError),
+    /// Standard output could not be written.
+    #[error("standard output: {0}; check where it goes to")]
+    Stdout(#[source] std::io::Error),
+    /// The reconstruction is not possible.
+    #[error("{inputs}: {source}")]
+    Reconstruct {
+        /// The inputs, in words.
+        inputs: String,
+        /// Why.
+        source: ReconstructError,
+    },
+    /// The comparison is not possible.
+    #[error("{} and {}: {source}", shown(mesh), shown(truth))]
+    Compare {
+        /// The mesh.
+        mesh: PathBuf,
+        /// The truth.
+        truth: PathBuf,
+        /// Why.
+        source: CompareError,
+    },
+    /// A mesh that cannot be examined.
+    #[error("{}: {source}; repair or export the mesh again", shown(path))]
+    Mesh {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: MeshError,
+    },
+    /// A file was to be read and written, or written twice.
+    #[error("{}: named as both {first} and {second}; choose another name for one of them", shown(path))]
+    SameFile {
+        /// The file.
+        path: PathBuf,
+        /// What it is first.
+        first: &'static str,
+        /// What it is, too.
+        second: &'static str,
+    },
+    /// The options left no point over.
+    #[error("{inputs}: no point is left: {filters}; widen them")]
+    NothingLeft {
+        /// The inputs, in words.
+        inputs: String,
+        /// What each option left out.
+        filters: String,
+    },
+    /// `--classes` for points that have none.
+    #[error("{inputs}: {}; leave out --classes", no_classes(*some))]
+    NoClasses {
+        /// The inputs, in words.
+        inputs: String,
+        /// Whether some of the inputs have classes.
+        some: bool,
+    },
+    /// The threads cannot be started.
+    #[error("the threads cannot be started: {0}; give fewer --threads")]
+    Threads(#[from] rayon::ThreadPoolBuildError),
+    /// The user wants to stop.
+    #[error("interrupted")]
+    Interrupted,
+}
+
+impl CliError {
+    /// Whether the reader of a pipe has gone, which is a quiet end.
+    pub(crate) fn is_broken_pipe(&self) -> bool {
+        match self {
+            Self::Io(error) => error.is_broken_pipe(),
+            Self::Stdout(error) => error.kind() == std::io::ErrorKind::BrokenPipe,
+            _ => false,
+        }
+    }
+}
+
+fn no_classes(some: bool) -> &'static str {
+    if some { "some of the inputs have no classes" } else { "the points have no classes" }
+}
+
+/// Several files in words.
+pub(crate) fn in_words(paths: &[PathBuf]) -> String {
+    let first = shown(paths.first().map_or(Path::new("-"), PathBuf::as_path));
+    match paths.len() {
+        0 | 1 => first,
+        n => format!("{first} and {} more", n - 1),
+    }
+}

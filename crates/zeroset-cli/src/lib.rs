@@ -1,0 +1,75 @@
+//! The `zeroset` command as a library.
+//!
+//! What was typed ([`args`]) is resolved against files and clouds, then run: one module for each subcommand. Results go
+//! to standard output, everything else to standard error.
+//!
+//! | exit code | meaning |
+//! |---|---|
+//! | 0 | done; also if the reader of a pipe has gone |
+//! | 1 | failed: one line on standard error, `error: ...`, which names the file and the remedy |
+//! | 2 | wrong usage |
+//! | 130 | interrupted; no partial file is left |
+
+pub mod args;
+
+mod asprs;
+mod compare;
+mod completions;
+mod console;
+mod error;
+mod info;
+mod interrupt;
+mod memory;
+mod progress;
+mod reconstruct;
+mod report;
+mod sample;
+mod table;
+
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use args::{Args, Command};
+use console::Console;
+use error::CliError;
+
+/// Exit code of a command that was interrupted: 128 and the number of SIGINT.
+const INTERRUPTED: u8 = 130;
+
+/// Runs the command with the given words, of which the first is the program's own name.
+pub fn main(words: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let args = match Args::try_parse_from(words) {
+        Ok(args) => args,
+        Err(message) => {
+            // Help for a pager that has gone is no failure.
+            let _ = message.print();
+            return u8::try_from(message.exit_code()).map_or(ExitCode::FAILURE, ExitCode::from);
+        }
+    };
+    interrupt::install();
+    match run(args.command) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) if error.is_broken_pipe() => ExitCode::SUCCESS,
+        Err(_) if interrupt::requested() => {
+            zeroset_io::abandon_writes();
+            Console::complain("interrupted: nothing was written");
+            ExitCode::from(INTERRUPTED)
+        }
+        Err(error) => {
+            Console::complain(&format!("error: {error}"));
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(command: Command) -> Result<(), CliError> {
+    match command {
+        Command::Reconstruct(args) => reconstruct::run(&args),
+        Command::Sample(args) => sample::run(&args),
+        Command::Compare(args) => compare::run(&args),
+        Command::Info(args) => info::run(&args),
+        Command::Completions(args) => completions::run(&args),
+    }
+}

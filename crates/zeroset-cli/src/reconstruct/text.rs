@@ -1,0 +1,176 @@
+//! What a reconstruction says to people.
+
+use serde::Serialize;
+use zeroset::mesh::{Mesh, topology};
+use zeroset::reconstruct::{PlanReport, ReconstructReport};
+use zeroset_io::LinearUnit;
+
+use crate::console::Console;
+use crate::report::{Input, OutputReport, Seconds};
+use crate::table::{bytes, columns, count, decimals_for, pairs, position, significant};
+
+/// The name under which a choice is typed.
+fn name(choice: impl Serialize) -> String {
+    let typed = serde_json::to_value(choice).ok();
+    typed.as_ref().and_then(serde_json::Value::as_str).unwrap_or("?").replace("minus_", "-")
+}
+
+/// A length with its unit, where that is known.
+fn length(value: f64, unit: Option<LinearUnit>) -> String {
+    let unit = match unit {
+        Some(LinearUnit::Metre) => " m",
+        Some(LinearUnit::Foot) => " ft",
+        Some(LinearUnit::UsSurveyFoot) => " US survey ft",
+        _ => "",
+    };
+    format!("{}{unit}", significant(value, 4))
+}
+
+/// The scene that was chosen, why, and how to choose another.
+pub(super) fn scene(plan: &PlanReport) -> String {
+    format!(
+        "scene: {}, as {}; choose another with --scene object|terrain|airborne|free",
+        name(plan.scene),
+        plan.scene_reason
+    )
+}
+
+/// That memory made the result coarser than the points are.
+pub(super) fn capped(plan: &PlanReport) -> String {
+    format!(
+        "warning: memory allows for a resolution of {} only, coarser than the points are; give more --memory, or --bounds",
+        significant(plan.resolution, 4)
+    )
+}
+
+impl Input {
+    /// Says what was read and left out.
+    pub(super) fn describe(&self, console: Console) {
+        for warning in &self.warnings {
+            console.say(&format!("warning: {warning}"));
+        }
+        for note in &self.read.notes {
+            console.detail(&format!("note: {note}"));
+        }
+        console.detail(&format!("points: {}", self.points_in_words()));
+    }
+
+    fn points_in_words(&self) -> String {
+        let dropped = [
+            (self.dropped.non_finite, "not finite"),
+            (self.dropped.withheld, "withheld"),
+            (self.dropped.by_class, "by class"),
+            (self.dropped.by_bounds, "by bounds"),
+            (self.dropped.isolated, "isolated"),
+        ];
+        let said: Vec<String> =
+            dropped.iter().filter(|(n, _)| *n > 0).map(|(n, why)| format!("{} {why}", count(*n))).collect();
+        let used = count(self.cloud.len());
+        if said.is_empty() { format!("{used}, all of them") } else { format!("{used}, left out {}", said.join(", ")) }
+    }
+}
+
+/// The plan, as `--dry-run` prints it.
+pub(super) fn plan(plan: &PlanReport, input: &Input, memory: u64) -> String {
+    let unit = input.read.unit;
+    let decimals = decimals_for(plan.resolution);
+    let [low, high] = plan.bounds;
+    let sides: [f64; 3] = std::array::from_fn(|a| high[a] - low[a]);
+    let cap = if plan.capped_by_memory { ", coarser than the points are, for memory" } else { "" };
+    pairs(&[
+        ("points", input.points_in_words()),
+        ("box from", position(low, decimals)),
+        ("box to", position(high, decimals)),
+        ("box sides", position(sides, decimals)),
+        ("spacing", length(plan.spacing, unit)),
+        ("scene", format!("{} ({})", name(plan.scene), plan.scene_reason)),
+        ("up", name(plan.up)),
+        ("resolution", format!("{}{cap}", length(plan.resolution, unit))),
+        ("levels", plan.levels.to_string()),
+        ("occupied cells", count(plan.occupied_cells)),
+        ("nodes", format!("about {}", count(plan.expected_nodes))),
+        ("memory", format!("about {}, of {} allowed", bytes(plan.expected_bytes), bytes(memory))),
+        ("trim", plan.trim.map_or_else(|| "off".to_owned(), |trim| length(trim, unit))),
+        ("screening", significant(plan.screening, 4)),
+        ("attributes", name(plan.attributes)),
+    ])
+}
+
+/// What was made, in a line, and what a user must know about the file.
+pub(super) fn summary(done: &ReconstructReport, output: &OutputReport, seconds: f64, input: &Input) -> String {
+    let mut text = format!(
+        "{}: {} vertices, {} triangles from {} points ({}, resolution {}) in {} s",
+        output.path,
+        count(done.vertices),
+        count(done.triangles),
+        count(done.plan.points),
+        name(done.plan.scene),
+        length(done.plan.resolution, input.read.unit),
+        significant(seconds, 3),
+    );
+    if let Some(offset) = output.local_offset.filter(|offset| *offset != [0.0; 3]) {
+        text += &format!("\nits coordinates are local: add {} for those of the input", position(offset, 0));
+    }
+    if !output.attributes_left_out.is_empty() {
+        text += &format!("\nthe format has no place for {}", output.attributes_left_out.join(", "));
+    }
+    text
+}
+
+/// Stages, levels and the mesh, for `--verbose`.
+pub(super) fn tables(done: &ReconstructReport, seconds: &Seconds, mesh: &Mesh) -> String {
+    let clock = |s: f64| format!("{s:.3}");
+    let words = |row: &[&str]| row.iter().map(|w| (*w).to_owned()).collect::<Vec<_>>();
+    let mut stages = vec![words(&["stage", "seconds"])];
+    for (stage, s) in [
+        ("read", seconds.read),
+        ("select", seconds.select),
+        ("plan", done.seconds.plan),
+        ("fit", done.seconds.fit),
+        ("contour", done.seconds.contour),
+        ("attributes", done.seconds.attributes),
+        ("write", seconds.write),
+        ("total", seconds.total),
+    ] {
+        stages.push(vec![stage.to_owned(), clock(s)]);
+    }
+    let mut levels =
+        vec![words(&["level", "cell", "occupied", "nodes", "start", "steps", "R before", "R after", "seconds"])];
+    for level in &done.fit.levels {
+        let first = level.iterations.first().map_or(level.rayleigh_quotient, |i| i.rayleigh_quotient);
+        levels.push(vec![
+            (level.level + 1).to_string(),
+            significant(level.spacing, 4),
+            count(level.occupied_cells),
+            count(level.free_nodes),
+            if level.seeded { "seed" } else { "coarser" }.to_owned(),
+            level.iterations.len().to_string(),
+            significant(first, 5),
+            significant(level.rayleigh_quotient, 5),
+            clock(level.seconds),
+        ]);
+    }
+    let mut text = format!("{}\n{}", columns(&stages), columns(&levels));
+    if let Ok(topology) = topology(mesh) {
+        let largest = topology.components.iter().map(|c| c.area).fold(0.0, f64::max);
+        text += &format!(
+            "\n{} with over 1 % of the triangles, {} in all; the largest holds {:.1} % of the area; {}\n",
+            if topology.large_components == 1 {
+                "1 component".to_owned()
+            } else {
+                format!("{} components", topology.large_components)
+            },
+            count(topology.components.len()),
+            100.0 * largest / topology.area,
+            if topology.closed {
+                "closed".to_owned()
+            } else {
+                format!("{} boundary edges", count(topology.boundary_edges))
+            },
+        );
+    }
+    if let Some(peak) = crate::memory::peak() {
+        text += &format!("{} of memory at most, {} expected\n", bytes(peak), bytes(done.plan.expected_bytes));
+    }
+    text
+}
