@@ -1,6 +1,6 @@
 //! `zeroset compare`.
 
-use zeroset::mesh::{Agreement, CompareParams, CompareReport, OneWay, Topology, compare};
+use zeroset::mesh::{Agreement, CompareError, CompareParams, CompareReport, OneWay, Role, Topology, compare};
 use zeroset_io::read_mesh;
 
 use crate::args::CompareArgs;
@@ -23,9 +23,22 @@ pub(crate) fn run(args: &CompareArgs) -> Result<(), CliError> {
     let progress = Progress::new(Console::Normal);
     let report = interrupt::watched(|| compare(&mesh, &truth, &params, &progress))?;
     progress.finish();
-    let report =
-        report.map_err(|source| CliError::Compare { mesh: args.mesh.clone(), truth: args.truth.clone(), source })?;
+    let report = report.map_err(|error| named(error, args))?;
     Console::print(&if args.json { to_json(&report) } else { table(&report) })
+}
+
+/// The error with the name of the file that it is about.
+fn named(error: CompareError, args: &CompareArgs) -> CliError {
+    let path = |role| match role {
+        Role::Mesh => args.mesh.clone(),
+        Role::Truth => args.truth.clone(),
+    };
+    match error {
+        CompareError::NoSurface { role, faces } => CliError::NoSurface { path: path(role), faces },
+        CompareError::Broken { role, source } => CliError::Mesh { path: path(role), source },
+        CompareError::Cancelled(_) => CliError::Interrupted,
+        other @ CompareError::Parameter { .. } => CliError::Compare(other),
+    }
 }
 
 fn figure(value: f64) -> String {

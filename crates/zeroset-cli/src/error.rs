@@ -23,16 +23,17 @@ pub(crate) enum CliError {
         /// Why.
         source: ReconstructError,
     },
-    /// The comparison is not possible.
-    #[error("{} and {}: {source}", shown(mesh), shown(truth))]
-    Compare {
-        /// The mesh.
-        mesh: PathBuf,
-        /// The truth.
-        truth: PathBuf,
-        /// Why.
-        source: CompareError,
+    /// A mesh without area.
+    #[error("{}: there is no surface in it ({faces} triangles, no area); give a mesh", shown(path))]
+    NoSurface {
+        /// The file.
+        path: PathBuf,
+        /// Number of its triangles.
+        faces: usize,
     },
+    /// The comparison is not possible for a reason of its own.
+    #[error(transparent)]
+    Compare(CompareError),
     /// A mesh that cannot be examined.
     #[error("{}: {source}; repair or export the mesh again", shown(path))]
     Mesh {
@@ -52,12 +53,14 @@ pub(crate) enum CliError {
         second: &'static str,
     },
     /// The options left no point over.
-    #[error("{inputs}: no point is left: {filters}; widen them")]
+    #[error("{inputs}: no point is left: {filters}; widen {}", if *several { "them" } else { "it" })]
     NothingLeft {
         /// The inputs, in words.
         inputs: String,
         /// What each option left out.
         filters: String,
+        /// Whether several did.
+        several: bool,
     },
     /// `--classes` for points that have none.
     #[error("{inputs}: {}; leave out --classes", no_classes(*some))]

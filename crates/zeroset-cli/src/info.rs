@@ -11,6 +11,7 @@ use zeroset_io::{CloudFormat, IoError, LinearUnit, MeshFormat, ReadReport, read_
 
 use crate::args::InfoArgs;
 use crate::asprs::class_name;
+use crate::cloud_box::bounds;
 use crate::compare::topologies;
 use crate::console::Console;
 use crate::error::CliError;
@@ -247,16 +248,4 @@ fn attribute_names(attributes: &zeroset::cloud::Attributes) -> Vec<&'static str>
         ("classes", attributes.classes.is_some()),
     ];
     present.into_iter().filter(|(_, present)| *present).map(|(name, _)| name).collect()
-}
-
-fn bounds(cloud: &Cloud) -> Option<[[f64; 3]; 2]> {
-    let (mut low, mut high) = (*cloud.points.first()?, *cloud.points.first()?);
-    for point in &cloud.points {
-        for axis in 0..3 {
-            low[axis] = low[axis].min(point[axis]);
-            high[axis] = high[axis].max(point[axis]);
-        }
-    }
-    let o = cloud.world_from_local;
-    Some([low, high].map(|p| std::array::from_fn(|a| p[a] + o[a])))
 }

@@ -10,6 +10,9 @@ use crate::INTERRUPTED;
 use crate::console::Console;
 use crate::error::CliError;
 
+/// What the user is told.
+pub(crate) const STOPPED: &str = "interrupted: no unfinished file is left";
+
 static REQUESTED: AtomicBool = AtomicBool::new(false);
 /// Number of computations under way that look at the flag.
 static WATCHED: AtomicUsize = AtomicUsize::new(0);
@@ -20,7 +23,7 @@ pub(crate) fn install() {
         let again = REQUESTED.swap(true, Ordering::SeqCst);
         if again || WATCHED.load(Ordering::SeqCst) == 0 {
             zeroset_io::abandon_writes();
-            Console::complain("interrupted: nothing was written");
+            Console::complain(STOPPED);
             std::process::exit(i32::from(INTERRUPTED));
         }
     });

@@ -13,6 +13,7 @@
 pub mod args;
 
 mod asprs;
+mod cloud_box;
 mod compare;
 mod completions;
 mod console;
@@ -54,7 +55,7 @@ pub fn main(words: impl IntoIterator<Item = OsString>) -> ExitCode {
         Err(error) if error.is_broken_pipe() => ExitCode::SUCCESS,
         Err(_) if interrupt::requested() => {
             zeroset_io::abandon_writes();
-            Console::complain("interrupted: nothing was written");
+            Console::complain(interrupt::STOPPED);
             ExitCode::from(INTERRUPTED)
         }
         Err(error) => {

@@ -64,6 +64,13 @@ pub(crate) struct Dropped {
     pub(crate) isolated: u64,
 }
 
+impl Dropped {
+    /// All of them.
+    pub(crate) fn total(&self) -> u64 {
+        self.non_finite + self.withheld + self.by_class + self.by_bounds + self.isolated
+    }
+}
+
 /// Wall seconds of each stage.
 #[derive(Debug, Clone, Copy, Default, Serialize)]
 pub(crate) struct Seconds {

@@ -144,9 +144,9 @@ pub struct ReconstructArgs {
     /// Weight of the points against smoothness, without unit; lower it for noise beyond a third of a cell.
     #[arg(long, value_name = "ALPHA", value_parser = values::positive, default_value_t = zeroset::fit::FitParams::SCREENING)]
     pub screening: f64,
-    /// Values of the nearest point that each vertex gets: off, rgb, intensity or class.
-    #[arg(long, value_name = "WHICH", default_value = "rgb", hide_possible_values = true)]
-    pub attributes: AttributesChoice,
+    /// Values of the nearest point that each vertex gets: off, rgb, intensity or class [default: rgb].
+    #[arg(long, value_name = "WHICH", hide_possible_values = true)]
+    pub attributes: Option<AttributesChoice>,
 
     /// Use only these classes, such as 2,6,9 [default: all].
     #[arg(long, value_name = "LIST", value_parser = values::classes, help_heading = "Points")]
@@ -154,8 +154,9 @@ pub struct ReconstructArgs {
     /// Leave these classes out, or `none` [default: 7,18, noise, unless --classes names them].
     #[arg(long, value_name = "LIST|none", value_parser = values::excluded, help_heading = "Points")]
     pub exclude: Option<Classes>,
-    /// Use only points in this box of world coordinates: xmin,ymin,xmax,ymax[,zmin,zmax].
-    #[arg(long, value_name = "BOX", value_parser = values::bounds, allow_hyphen_values = true, help_heading = "Points")]
+    /// Use only points in this box of world coordinates.
+    #[arg(help = "Use only points in this box of world coordinates: xmin,ymin,xmax,ymax[,zmin,zmax]",
+        long, value_name = "BOX", value_parser = values::bounds, allow_hyphen_values = true, help_heading = "Points")]
     pub bounds: Option<Bounds>,
     /// Drop groups of up to K points that lie far from all others; 8 is usual.
     #[arg(long, value_name = "off|K", value_parser = values::outliers, default_value = "off", help_heading = "Points")]

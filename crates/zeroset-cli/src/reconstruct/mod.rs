@@ -101,10 +101,10 @@ fn params(args: &ReconstructArgs, formats: &[CloudFormat]) -> ReconstructParams 
             Some(TrimChoice::Length(length)) => Trim::Length(length),
         },
         attributes: match args.attributes {
-            AttributesChoice::Off => AttributeChoice::Off,
-            AttributesChoice::Rgb => AttributeChoice::Rgb,
-            AttributesChoice::Intensity => AttributeChoice::Intensity,
-            AttributesChoice::Class => AttributeChoice::Class,
+            Some(AttributesChoice::Off) => AttributeChoice::Off,
+            Some(AttributesChoice::Rgb) | None => AttributeChoice::Rgb,
+            Some(AttributesChoice::Intensity) => AttributeChoice::Intensity,
+            Some(AttributesChoice::Class) => AttributeChoice::Class,
         },
         memory: args.memory.unwrap_or_else(memory::default_limit),
     }

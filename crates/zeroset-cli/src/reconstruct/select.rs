@@ -3,10 +3,11 @@
 use zeroset::cloud::{Cloud, Filter, NOISE_CLASSES, isolated_points, retain};
 use zeroset_io::ReadReport;
 
-use crate::args::{Outliers, ReconstructArgs};
+use crate::args::{AttributesChoice, Outliers, ReconstructArgs};
+use crate::cloud_box::bounds;
 use crate::error::{CliError, in_words};
 use crate::report::{Dropped, Filters, Input};
-use crate::table::count;
+use crate::table::{count, position};
 
 /// Leaves out what the options leave out.
 pub(super) fn select(mut cloud: Cloud, read: ReadReport, args: &ReconstructArgs) -> Result<Input, CliError> {
@@ -15,7 +16,7 @@ pub(super) fn select(mut cloud: Cloud, read: ReadReport, args: &ReconstructArgs)
         let some = read.attributes_left_out.contains(&"classes");
         return Err(CliError::NoClasses { inputs: in_words(&args.inputs), some });
     }
-    let mut warnings = Vec::new();
+    let mut warnings: Vec<String> = missing_attribute(args, &cloud).into_iter().collect();
     if !filters.exclude.is_empty() && read.attributes_left_out.contains(&"classes") {
         warnings.push("some of the inputs have no classes, so no class is left out; use inputs of one kind".to_owned());
     }
@@ -24,7 +25,7 @@ pub(super) fn select(mut cloud: Cloud, read: ReadReport, args: &ReconstructArgs)
         exclude_classes: filters.exclude.clone(),
         bounds: args.bounds.map(|b| b.0),
     };
-    let before = cloud.len();
+    let (before, extent) = (cloud.len(), bounds(&cloud));
     let by = filter.apply(&mut cloud);
     let mut dropped = Dropped {
         non_finite: read.non_finite,
@@ -38,8 +39,7 @@ pub(super) fn select(mut cloud: Cloud, read: ReadReport, args: &ReconstructArgs)
         dropped.isolated = retain(&mut cloud, &keep) as u64;
     }
     if cloud.is_empty() {
-        let filters = left_out(&dropped, before, &filters);
-        return Err(CliError::NothingLeft { inputs: in_words(&args.inputs), filters });
+        return Err(nothing_left(&dropped, before, extent, &filters, args));
     }
     Ok(Input { cloud, read, filters, dropped, warnings })
 }
@@ -65,14 +65,40 @@ fn filters(args: &ReconstructArgs) -> Filters {
     }
 }
 
-/// What each option left out, in words.
-fn left_out(dropped: &Dropped, before: usize, filters: &Filters) -> String {
-    let by_class = if filters.classes.is_some() { "--classes and --exclude" } else { "--exclude" };
+/// A warning if values are asked for that the points do not have.
+fn missing_attribute(args: &ReconstructArgs, cloud: &Cloud) -> Option<String> {
+    let from = &cloud.attributes;
+    let (there, name) = match args.attributes? {
+        AttributesChoice::Off => return None,
+        AttributesChoice::Rgb => (from.colors.is_some(), "colours"),
+        AttributesChoice::Intensity => (from.intensities.is_some(), "intensities"),
+        AttributesChoice::Class => (from.classes.is_some(), "classes"),
+    };
+    (!there).then(|| format!("the points have no {name}, so the mesh will have none"))
+}
+
+/// The error that names what left out how many points.
+fn nothing_left(
+    dropped: &Dropped,
+    before: usize,
+    extent: Option<[[f64; 3]; 2]>,
+    filters: &Filters,
+    args: &ReconstructArgs,
+) -> CliError {
+    let by_class = match (&filters.classes, filters.exclude.is_empty()) {
+        (Some(_), true) => "--classes",
+        (Some(_), false) => "--classes and --exclude",
+        (None, _) => "--exclude",
+    };
     let parts = [(by_class, dropped.by_class), ("--bounds", dropped.by_bounds), ("--outliers", dropped.isolated)];
     let said: Vec<String> = parts
         .iter()
         .filter(|(_, points)| *points > 0)
         .map(|(option, points)| format!("{option} left out {}", count(*points)))
         .collect();
-    format!("{} of {}", said.join(", "), count(before))
+    let mut words = format!("{} of {}", said.join(", "), count(before));
+    if let Some([low, high]) = extent.filter(|_| dropped.by_bounds > 0) {
+        words += &format!(", which lie from {} to {}", position(low, 1), position(high, 1));
+    }
+    CliError::NothingLeft { inputs: in_words(&args.inputs), filters: words, several: said.len() > 1 }
 }

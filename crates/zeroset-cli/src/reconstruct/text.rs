@@ -50,7 +50,7 @@ impl Input {
             console.say(&format!("warning: {warning}"));
         }
         for note in &self.read.notes {
-            console.detail(&format!("note: {note}"));
+            console.say(&format!("note: {note}"));
         }
         console.detail(&format!("points: {}", self.points_in_words()));
     }
@@ -99,11 +99,16 @@ pub(super) fn plan(plan: &PlanReport, input: &Input, memory: u64) -> String {
 /// What was made, in a line, and what a user must know about the file.
 pub(super) fn summary(done: &ReconstructReport, output: &OutputReport, seconds: f64, input: &Input) -> String {
     let mut text = format!(
-        "{}: {} vertices, {} triangles from {} points ({}, resolution {}) in {} s",
+        "{}: {} vertices, {} triangles from {}{} points ({}, resolution {}) in {} s",
         output.path,
         count(done.vertices),
         count(done.triangles),
         count(done.plan.points),
+        if input.dropped.total() > 0 {
+            format!(" of {}", count(done.plan.points as u64 + input.dropped.total()))
+        } else {
+            String::new()
+        },
         name(done.plan.scene),
         length(done.plan.resolution, input.read.unit),
         significant(seconds, 3),
