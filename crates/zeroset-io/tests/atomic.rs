@@ -5,7 +5,7 @@ mod common;
 use std::io::Write;
 
 use common::folder;
-use zeroset_io::{IoError, write_atomically};
+use zeroset_io::{IoError, check_writable, write_atomically};
 
 fn entries(folder: &tempfile::TempDir) -> usize {
     std::fs::read_dir(folder.path()).unwrap().count()
@@ -78,4 +78,22 @@ fn links_are_followed() {
     write_atomically(&link, |out| out.write_all(b"new").map_err(|e| IoError::from_system(&link, e))).unwrap();
     assert!(std::fs::symlink_metadata(&link).unwrap().is_symlink());
     assert_eq!(std::fs::read_to_string(&target).unwrap(), "new");
+}
+
+#[test]
+fn what_can_be_written_is_known_before() {
+    let folder = folder();
+    let path = folder.path().join("report.json");
+    check_writable(&path).unwrap();
+    assert_eq!(entries(&folder), 0);
+    std::fs::write(&path, "old").unwrap();
+    check_writable(&path).unwrap();
+    assert_eq!((entries(&folder), std::fs::read_to_string(&path).unwrap()), (1, "old".into()));
+    let missing = check_writable(&folder.path().join("no/report.json"));
+    assert!(matches!(missing, Err(IoError::FolderMissing { .. })));
+    assert!(matches!(check_writable(folder.path()), Err(IoError::IsDirectory { .. })));
+    let mut permissions = std::fs::metadata(&path).unwrap().permissions();
+    permissions.set_readonly(true);
+    std::fs::set_permissions(&path, permissions).unwrap();
+    assert!(matches!(check_writable(&path), Err(IoError::PermissionDenied { .. })));
 }

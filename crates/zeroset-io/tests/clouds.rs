@@ -403,6 +403,8 @@ fn several_files_become_one_cloud() {
     assert_eq!(all.cloud.attributes, Default::default());
     assert_eq!(all.report.attributes_left_out, ["colors", "intensities", "classes"]);
     assert_eq!((all.report.sources.len(), all.report.points_read, all.report.points_declared), (3, 9, None));
+    let counts: Vec<u64> = all.report.sources.iter().map(|source| source.points).collect();
+    assert_eq!(counts.iter().sum::<u64>(), all.report.points_read, "{counts:?}");
     assert!(all.report.notes.iter().any(|n| n.contains("another reference system")), "{:?}", all.report.notes);
     assert_eq!(all.cloud.crs.as_deref(), Some("EPSG:28992"));
 

@@ -1,0 +1,97 @@
+//! What is typed: help, wrong usage, pipes.
+
+mod common;
+
+use std::io::Read;
+use std::process::Stdio;
+
+use common::{folder, line, run, zeroset};
+
+#[test]
+fn help_tells_what_there_is() {
+    let folder = folder();
+    let help = line(folder.path(), "--help").ok().stdout;
+    for command in ["reconstruct", "sample", "compare", "info", "completions"] {
+        assert!(help.contains(command), "{command}");
+        let own = line(folder.path(), &format!("{command} --help")).ok().stdout;
+        assert!(own.contains("Usage: zeroset"), "{own}");
+        assert!(command == "completions" || own.contains("Examples:"), "{own}");
+    }
+    let own = line(folder.path(), "reconstruct --help").ok().stdout;
+    for option in [
+        "--scene",
+        "--up",
+        "--resolution",
+        "--depth",
+        "--classes",
+        "--exclude",
+        "--bounds",
+        "--outliers",
+        "--screening",
+        "--trim",
+        "--attributes",
+        "--threads",
+        "--memory",
+        "--report",
+        "--quiet",
+        "--verbose",
+        "--dry-run",
+    ] {
+        assert!(own.contains(option), "{option}");
+    }
+    assert!(line(folder.path(), "-V").ok().stdout.contains(env!("CARGO_PKG_VERSION")));
+}
+
+#[test]
+fn wrong_usage_exits_with_2() {
+    let folder = folder();
+    for words in [
+        "",
+        "fly",
+        "reconstruct",
+        "reconstruct in.xyz",
+        "reconstruct in.xyz -o out.ply --resolution 0",
+        "reconstruct in.xyz -o out.ply --resolution nan",
+        "reconstruct in.xyz -o out.ply --resolution 1 --depth 5",
+        "reconstruct in.xyz -o out.ply --scene moon",
+        "reconstruct in.xyz -o out.ply --up w",
+        "reconstruct in.xyz -o out.ply --classes 256",
+        "reconstruct in.xyz -o out.ply --bounds 1,2,3",
+        "reconstruct in.xyz -o out.ply --bounds 3,0,1,1",
+        "reconstruct in.xyz -o out.ply --outliers some",
+        "reconstruct in.xyz -o out.ply --threads 0",
+        "reconstruct in.xyz -o out.ply --memory much",
+        "reconstruct in.xyz -o out.ply --quiet --verbose",
+        "sample moon -o out.xyz",
+        "sample torus",
+        "sample torus -o out.xyz --points 0",
+        "compare a.ply",
+        "compare a.ply b.ply --sharp-angle 200",
+        "info",
+    ] {
+        let outcome = line(folder.path(), words);
+        assert_eq!(outcome.code, Some(2), "{words}: {}", outcome.stderr);
+        assert!(!outcome.stderr.is_empty(), "{words}");
+    }
+}
+
+#[test]
+fn completions_are_for_this_command() {
+    let folder = folder();
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        assert!(run(folder.path(), ["completions", shell]).ok().stdout.contains("reconstruct"), "{shell}");
+    }
+}
+
+#[test]
+fn a_reader_that_goes_is_no_error() {
+    let folder = folder();
+    let mut command = zeroset(folder.path());
+    command.args(["sample", "torus", "-o", "-", "--points", "200000"]);
+    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut first = [0; 100];
+    child.stdout.take().unwrap().read_exact(&mut first).unwrap();
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(0));
+    assert_eq!(String::from_utf8_lossy(&output.stderr), "");
+}
