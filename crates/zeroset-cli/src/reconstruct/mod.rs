@@ -44,7 +44,9 @@ pub(crate) fn run(args: &ReconstructArgs) -> Result<(), CliError> {
 
     let progress = Progress::new(console);
     let failed = |source: ReconstructError| CliError::Reconstruct { inputs: in_words(&args.inputs), source };
+    let planning = Instant::now();
     let mut plan = interrupt::watched(|| plan(&input.cloud, &params, &progress))?.map_err(failed)?;
+    seconds.plan = planning.elapsed().as_secs_f64();
     progress.finish();
     if args.scene == SceneChoice::Auto && params.scene.is_some() {
         plan.report.scene_reason = "every input is las or laz".to_owned();
