@@ -31,11 +31,15 @@ pub fn mask_set(mask: &mut Mask, local: usize) {
 
 /// The nodes of block `b` whose neighbour one step along `axis`, ahead (`true`) or behind, is in the set.
 pub(crate) fn shifted(blocks: &Blocks, masks: &[Mask], b: usize, axis: usize, ahead: bool) -> Mask {
-    let own = &masks[b];
     let mut step = [0_i32; 3];
     step[axis] = if ahead { 1 } else { -1 };
     let other = blocks.neighbors[b][neighbor_code(step)];
     let far = if other == NONE { [0; 8] } else { masks[other as usize] };
+    shift(&masks[b], &far, axis, ahead)
+}
+
+/// The nodes whose neighbour one step along `axis` is in the set, given the set in the block and in the one on that side.
+pub(crate) fn shift(own: &Mask, far: &Mask, axis: usize, ahead: bool) -> Mask {
     std::array::from_fn(|z| match (axis, ahead) {
         (0, true) => (own[z] & !FIRST_COLUMN) >> 1 | (far[z] & FIRST_COLUMN) << 7,
         (0, false) => (own[z] & !LAST_COLUMN) << 1 | (far[z] & LAST_COLUMN) >> 7,
@@ -76,6 +80,22 @@ pub fn dilate(blocks: &Blocks, masks: &[Mask]) -> Vec<Mask> {
             grown
         })
         .collect()
+}
+
+/// Grows a set by one step in all 26 directions, across the blocks that are there.
+#[must_use]
+pub fn dilate_box(blocks: &Blocks, masks: &[Mask]) -> Vec<Mask> {
+    let mut grown = masks.to_vec();
+    for axis in 0..3 {
+        grown = (0..masks.len())
+            .into_par_iter()
+            .map(|b| {
+                let (behind, ahead) = (shifted(blocks, &grown, b, axis, false), shifted(blocks, &grown, b, axis, true));
+                std::array::from_fn(|z| grown[b][z] | behind[z] | ahead[z])
+            })
+            .collect();
+    }
+    grown
 }
 
 #[cfg(test)]

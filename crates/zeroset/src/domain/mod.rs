@@ -29,6 +29,6 @@ pub use blocks::{BLOCK_NODES, Blocks, NONE, block_key, block_of_key, neighbor_co
 pub(crate) use gather::{Halo, gather, halo_index, replicate_at_domain_faces};
 pub use kuhn::{TETRAHEDRA, Tetrahedron, barycentric, tetrahedron_of};
 pub use lattice::{Lattice, LatticeError};
-pub(crate) use mask::shifted;
-pub use mask::{Mask, dilate, mask_get, mask_row, mask_set};
+pub use mask::{Mask, dilate, dilate_box, mask_get, mask_row, mask_set};
+pub(crate) use mask::{shift, shifted};
 pub use points::{Cells, LatticePoints};

@@ -1,6 +1,6 @@
 //! A fitted F: values on the nodes of a sparse lattice, linear on each tetrahedron.
 
-use crate::domain::{Blocks, Cells, Lattice, Mask};
+use crate::domain::{Blocks, Lattice, Mask};
 
 /// A fitted function, known in a band around the surface.
 #[derive(Debug, Clone)]
@@ -13,12 +13,10 @@ pub struct LatticeField {
     pub known: Vec<Mask>,
     /// 512 values a block, x fastest.
     pub values: Vec<f32>,
-    /// The cells that held points.
-    pub cells: Cells,
 }
 
 impl LatticeField {
-    pub(crate) fn new(lattice: Lattice, blocks: Blocks, known: Vec<Mask>, values: Vec<f32>, cells: Cells) -> Self {
-        Self { lattice, blocks, known, values, cells }
+    pub(crate) fn new(lattice: Lattice, blocks: Blocks, known: Vec<Mask>, values: Vec<f32>) -> Self {
+        Self { lattice, blocks, known, values }
     }
 }

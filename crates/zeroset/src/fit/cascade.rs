@@ -1,11 +1,13 @@
 //! The cascade: from the seed on the coarsest lattice to the finest.
 
+use std::time::Instant;
+
 use serde::Serialize;
 
-use super::gradient::{gradient_lengths, linearise};
-use super::level::{FixedFaces, Level, LevelParams, Nodes};
+use super::gradient::{gradient_lengths, linearise, thin_share};
+use super::level::{FixedFaces, Gradient, Level, LevelParams, Nodes};
 use super::operator::{apply, energy};
-use super::prolong::{band, prolong};
+use super::prolong::{Solved, band, complete, prolong};
 use super::seed::boundary_potential;
 use super::solve::{SolveParams, conjugate_gradients};
 use crate::domain::{Cells, Lattice, LatticeError, LatticePoints};
@@ -107,6 +109,8 @@ pub struct LevelReport {
     pub seeded: bool,
     /// R(F) of the rejected start, where two were compared.
     pub other_rayleigh_quotient: Option<f64>,
+    /// Share of the samples that have a second sheet within about a cell; `None` on the first levels.
+    pub thin_share: Option<f64>,
     /// Step by step.
     pub iterations: Vec<Iteration>,
     /// R(F) per occupied cell at the end.
@@ -125,17 +129,23 @@ pub struct FitReport {
 }
 
 /// Steps on each level after the first; the last entry serves all further levels.
-const STEPS: [usize; 4] = [30, 15, 6, 3];
+const STEPS: [usize; 4] = [30, 15, 6, 4];
 const SOLVE: SolveParams = SolveParams { tolerance: 1e-3, max_steps: 200 };
+/// A body is thin-walled where at least this share of the samples of the last dense level has a second sheet within about a cell.
+/// Plates with walls of half a cell to a cell have 0.11 to 0.59 there, bodies without thin walls up to 0.08 (at sharp edges).
+const THIN_SHARE: f64 = 0.1;
+/// A new seed is tried on a thin-walled body while a level has at most this many nodes across: it can hardly be won back later.
+const MAX_THIN_SEED_NODES: u32 = 192;
+/// A level is at rest when a step lowers R by less than this share.
+const AT_REST: f64 = 3e-4;
 /// A new seed is tried while a level has at most this many nodes across.
 const MAX_SEED_NODES: u32 = 96;
 /// A new seed replaces the continued F if its R is lower by more than this share.
 const SEED_MARGIN: f64 = 0.015;
 
-/// A level with F on it.
+/// F on a level, and how it came about.
 struct Fitted {
-    level: Level,
-    f: Vec<f32>,
+    solved: Solved,
     report: LevelReport,
 }
 
@@ -184,8 +194,8 @@ impl Prepared {
         }
         let cascade = Cascade { lattice, points, params: &params, monitor };
         let (fitted, report) = cascade.run()?;
-        let Fitted { level, f, .. } = fitted;
-        Ok((LatticeField::new(cascade.lattice, level.blocks, level.known, f, level.cells), report))
+        let Solved { blocks, known, f, .. } = fitted.solved;
+        Ok((LatticeField::new(cascade.lattice, blocks, known, f), report))
     }
 }
 
@@ -227,14 +237,14 @@ impl Cascade<'_> {
         let share = |done: u32| 0.9 * 4.0_f64.powi(done as i32 - levels as i32);
         self.monitor.stage(&format!("fitting level 1 of {levels}"));
         let mut current = self.seeded(0)?;
-        let mut climbing = true;
         for index in 1..levels {
             self.monitor.share(share(index));
             self.monitor.stage(&format!("fitting level {} of {levels}", index + 1));
             report.levels.push(current.report.clone());
-            let nodes = self.lattice.nodes_at(index).into_iter().max().unwrap_or(0);
-            climbing &= nodes <= MAX_SEED_NODES;
-            current = if climbing { self.climb(current, index)? } else { self.refined(&current, index)? };
+            let thin = current.report.thin_share.is_some_and(|share| share >= THIN_SHARE);
+            let most = if thin { MAX_THIN_SEED_NODES } else { MAX_SEED_NODES };
+            current =
+                if self.is_dense(index, most) { self.climb(current, index)? } else { self.refined(&current, index)? };
         }
         self.monitor.share(share(levels));
         report.levels.push(current.report.clone());
@@ -259,55 +269,86 @@ impl Cascade<'_> {
 
     /// Seeds anew on a dense level and iterates to rest.
     fn seeded(&self, index: u32) -> Result<Fitted, FitError> {
-        let start = std::time::Instant::now();
+        let start = Instant::now();
         let level = self.dense_level(index);
-        self.seed_on(level, start)
+        let (f, report) = self.seed_on(&level, start)?;
+        self.settled(level, f, report, start)
     }
 
-    fn seed_on(&self, level: Level, start: std::time::Instant) -> Result<Fitted, FitError> {
-        let f = boundary_potential(&level, self.params.scene.faces());
-        let mut fitted = self.iterate(level, f, STEPS[0], start)?;
-        fitted.report.seeded = true;
-        Ok(fitted)
+    fn seed_on(&self, level: &Level, start: Instant) -> Result<(Vec<f32>, LevelReport), FitError> {
+        let f = boundary_potential(level, self.params.scene.faces());
+        let (f, report) = self.iterate(level, f, STEPS[0], start)?;
+        Ok((f, LevelReport { seeded: true, ..report }))
     }
 
     /// Both continues and seeds anew on a dense level, and keeps the lower R.
     fn climb(&self, coarse: Fitted, index: u32) -> Result<Fitted, FitError> {
-        let start = std::time::Instant::now();
+        let start = Instant::now();
         let level = self.dense_level(index);
-        let f = prolong(&coarse.level, &coarse.f, &level.blocks, &level.known);
+        let f = prolong(&coarse.solved, &level.blocks, &level.known);
         drop(coarse);
-        let continued = self.iterate(level, f, STEPS[(index as usize).min(STEPS.len() - 1)], start)?;
-        let Fitted { level, f, report } = continued;
-        let mut seeded = self.seed_on(level, start)?;
-        let (old, new) = (report.rayleigh_quotient, seeded.report.rayleigh_quotient);
-        if new < (1.0 - SEED_MARGIN) * old {
-            seeded.report.other_rayleigh_quotient = Some(old);
-            return Ok(seeded);
+        let (continued, old) = self.iterate(&level, f, STEPS[0], start)?;
+        let (seeded, new) = self.seed_on(&level, start)?;
+        let seconds = start.elapsed().as_secs_f64();
+        let wins = new.rayleigh_quotient < (1.0 - SEED_MARGIN) * old.rayleigh_quotient;
+        let (f, kept, other) = if wins { (seeded, new, old) } else { (continued, old, new) };
+        let report = LevelReport { other_rayleigh_quotient: Some(other.rayleigh_quotient), seconds, ..kept };
+        self.settled(level, f, report, start)
+    }
+
+    /// Ends a dense level. On the last one, unless walls are thin, F goes on to rest with the recovered gradient.
+    fn settled(&self, mut level: Level, f: Vec<f32>, report: LevelReport, start: Instant) -> Result<Fitted, FitError> {
+        if self.is_dense(level.index + 1, MAX_SEED_NODES) {
+            return Ok(Fitted { solved: level.into_solved(f), report });
         }
-        let report =
-            LevelReport { other_rayleigh_quotient: Some(new), seconds: start.elapsed().as_secs_f64(), ..report };
-        Ok(Fitted { level: seeded.level, f, report })
+        let thin = thin_share(&level, &f);
+        let report = LevelReport { thin_share: Some(thin), ..report };
+        if thin >= THIN_SHARE {
+            return Ok(Fitted { solved: level.into_solved(f), report });
+        }
+        level.gradient = Gradient::Recovered;
+        let (f, last) = self.iterate(&level, f, STEPS[1], start)?;
+        let mut iterations = report.iterations;
+        iterations.extend(last.iterations);
+        let LevelReport { seeded, other_rayleigh_quotient, thin_share, .. } = report;
+        let report = LevelReport { seeded, other_rayleigh_quotient, thin_share, iterations, ..last };
+        Ok(Fitted { solved: level.into_solved(f), report })
+    }
+
+    /// Whether a level is there and has at most so many nodes across.
+    fn is_dense(&self, index: u32, most: u32) -> bool {
+        index <= self.lattice.finest && self.lattice.nodes_at(index).into_iter().all(|n| n <= most)
     }
 
     /// Continues on the band of the next level.
     fn refined(&self, coarse: &Fitted, index: u32) -> Result<Fitted, FitError> {
-        let start = std::time::Instant::now();
+        let start = Instant::now();
         let cells = Cells::new(&self.lattice, &self.points, index);
         let params = self.level_params();
-        let nodes = band(&self.lattice, &self.points, cells, &coarse.level, &coarse.f, params.faces);
-        let level = Level::new(&self.lattice, &self.points, index, nodes, &params);
-        let f = prolong(&coarse.level, &coarse.f, &level.blocks, &level.known);
-        self.iterate(level, f, STEPS[(index as usize).min(STEPS.len() - 1)], start)
+        let nodes = band(&self.lattice, &self.points, cells, &coarse.solved, params.faces);
+        let mut level = Level::new(&self.lattice, &self.points, index, nodes, &params);
+        let thin_share = coarse.report.thin_share;
+        if thin_share.is_none_or(|share| share < THIN_SHARE) {
+            level.gradient = Gradient::Recovered;
+        }
+        let f = prolong(&coarse.solved, &level.blocks, &level.known);
+        let steps = STEPS[(index as usize).min(STEPS.len() - 1)];
+        let (f, report) = self.iterate(&level, f, steps, start)?;
+        let solved = complete(level.into_solved(f), &coarse.solved);
+        Ok(Fitted {
+            solved,
+            report: LevelReport { seconds: start.elapsed().as_secs_f64(), thin_share, ..report },
+        })
     }
 
+    /// Inverse power steps on a level until R rests.
     fn iterate(
         &self,
-        level: Level,
+        level: &Level,
         mut f: Vec<f32>,
         steps: usize,
-        start: std::time::Instant,
-    ) -> Result<Fitted, FitError> {
+        start: Instant,
+    ) -> Result<(Vec<f32>, LevelReport), FitError> {
         let n = level.len();
         let (mut r, mut p, mut q, mut s) = (vec![0.0_f32; n], vec![0.0_f32; n], vec![0.0_f32; n], vec![0.0_f32; n]);
         let occupied = level.cells.len() as f64;
@@ -316,16 +357,15 @@ impl Cascade<'_> {
         let mut quotient = f64::INFINITY;
         for step in 0..=steps {
             check(self.monitor)?;
-            let norm = linearise(&level, &f, [&mut p, &mut q, &mut s], &mut r);
-            let energy = energy(&level, &f);
+            let norm = linearise(level, &f, [&mut p, &mut q, &mut s], &mut r);
+            let energy = energy(level, &f);
             quotient = energy * occupied / (norm * norm);
-            if step == steps || (last - quotient).abs() < 1e-4 * quotient {
+            if step == steps || last - quotient < AT_REST * quotient {
                 break;
             }
             last = quotient;
-            let best = norm / energy;
-            let scale = rescale_and_residual(&level, &mut f, &mut r, &mut q, best);
-            let solver_steps = conjugate_gradients(&level, &mut f, &mut r, &mut p, &mut q, scale, SOLVE);
+            let scale = rescale_and_residual(level, &mut f, &mut r, &mut q, norm / energy);
+            let solver_steps = conjugate_gradients(level, &mut f, &mut r, &mut p, &mut q, scale, SOLVE);
             iterations.push(Iteration { rayleigh_quotient: quotient, solver_steps });
         }
         let report = LevelReport {
@@ -337,11 +377,12 @@ impl Cascade<'_> {
             seconds: start.elapsed().as_secs_f64(),
             seeded: false,
             other_rayleigh_quotient: None,
+            thin_share: None,
             iterations,
             rayleigh_quotient: quotient,
-            gradient_quantiles: gradient_lengths(&level, &f),
+            gradient_quantiles: gradient_lengths(level, &f),
         };
-        Ok(Fitted { level, f, report })
+        Ok((f, report))
     }
 }
 

@@ -1,8 +1,14 @@
-//! The recovered gradient at the data, the normalisation N(F), and the right-hand side that is its transpose.
+//! The gradient at the data, the normalisation N(F), and the right-hand side that is its transpose.
+//!
+//! Two gradients serve. The *element's* is that of F on the sample's own tetrahedron; it sees nothing beyond it, so two sheets a cell and
+//! a half apart do not disturb each other. The *recovered* one takes central differences at the nodes and interpolates
+//! them; it is smoother under noise, but across a thin wall it sees the far side, and the two sheets cancel. So the first
+//! levels, which decide on inside and outside, use the element's, and later ones the recovered one, unless the body is
+//! thin-walled. Both are linear in F, so N is convex and homogeneous with either.
 
 use rayon::prelude::*;
 
-use super::level::Level;
+use super::level::{Gradient, Level};
 use super::operator::{LANES, row_at};
 use super::prior::{AIR, GAMMA};
 use super::samples::Sample;
@@ -11,8 +17,9 @@ use crate::domain::{Halo, NONE, TETRAHEDRA, gather, halo_index, mask_row, neighb
 /// Nodes 0..=8 along each axis: those that the samples of one block reach.
 const REACH: usize = 9 * 9 * 9;
 
-/// Sums of w b n at the nodes that one block's samples reach, x + 9 y + 81 z.
-type Splat = [[f32; 3]; REACH];
+/// What one block's samples give to the nodes they reach, x + 9 y + 81 z: the vector sum of w b n of the recovered gradients, and the
+/// finished right-hand side of the element gradients.
+type Splat = [[f32; 4]; REACH];
 
 /// Freezes n_i = g_i / |g_i| and sums w_i n_i to the nodes; returns N(F) = sum w |g| + gamma sum t F.
 ///
@@ -28,8 +35,8 @@ pub(super) fn linearise(level: &Level, f: &[f32], vectors: [&mut [f32]; 3], rhs:
             |halo, d| {
                 let b = blocks.keys.binary_search(&level.cells.block_keys[d]).expect("a block of data is stored");
                 gather::<f32, 1, 2>(f, &blocks.neighbors[b], 0.0, halo);
-                let mut splat = Box::new([[0.0; 3]; REACH]);
-                let sum = splat_block(halo, &level.samples.of_block[d], &mut splat);
+                let mut splat = Box::new([[0.0; 4]; REACH]);
+                let sum = splat_block(halo, &level.samples.of_block[d], level.gradient, &mut splat);
                 (splat, sum)
             },
         )
@@ -37,42 +44,55 @@ pub(super) fn linearise(level: &Level, f: &[f32], vectors: [&mut [f32]; 3], rhs:
     let data = partial.into_iter().sum::<f64>();
     let [vx, vy, vz] = vectors;
     vx.par_chunks_exact_mut(512)
-        .zip(vy.par_chunks_exact_mut(512).zip(vz.par_chunks_exact_mut(512)))
+        .zip(vy.par_chunks_exact_mut(512))
+        .zip(vz.par_chunks_exact_mut(512).zip(rhs.par_chunks_exact_mut(512)))
         .enumerate()
         .with_min_len(16)
-        .for_each(|(b, (vx, (vy, vz)))| join_splats(level, b, &splats, [vx, vy, vz]));
+        .for_each(|(b, ((vx, vy), (vz, rhs)))| join_splats(level, b, &splats, [vx, vy, vz, rhs]));
     drop(splats);
-    let told = divergence(level, f, [vx, vy, vz], rhs);
+    let told = right_hand_side(level, f, [vx, vy, vz], rhs);
     data + told
 }
 
-/// The recovered gradient of a sample: central differences at its four nodes, interpolated.
+/// The gradient at a sample, in cells.
 #[inline(always)]
-fn recovered_gradient(halo: &Halo<f32>, sample: &Sample) -> [f32; 3] {
+fn gradient_at(halo: &Halo<f32>, sample: &Sample, gradient: Gradient) -> [f32; 3] {
     let mut g = [0.0; 3];
-    for (at, weight) in nodes_of(sample).zip(sample.barycentric) {
-        for (axis, step) in [1, 16, 192].into_iter().enumerate() {
-            g[axis] += 0.5 * weight * (halo[at + step] - halo[at - step]);
+    let nodes = nodes_of(sample);
+    match gradient {
+        Gradient::Element => {
+            for (s, axis) in TETRAHEDRA[usize::from(sample.tetrahedron)].axes.into_iter().enumerate() {
+                g[axis] = halo[nodes[s + 1]] - halo[nodes[s]];
+            }
+        }
+        Gradient::Recovered => {
+            for (at, weight) in nodes.into_iter().zip(sample.barycentric) {
+                for (axis, step) in [1, 16, 192].into_iter().enumerate() {
+                    g[axis] += 0.5 * weight * (halo[at + step] - halo[at - step]);
+                }
+            }
         }
     }
     g
 }
 
+/// The four nodes of a sample's tetrahedron in the halo.
 #[inline(always)]
-fn nodes_of(sample: &Sample) -> impl Iterator<Item = usize> {
+fn nodes_of(sample: &Sample) -> [usize; 4] {
     let local = sample.local;
     let origin = [local & 7, local >> 3 & 7, local >> 6].map(i32::from);
-    TETRAHEDRA[usize::from(sample.tetrahedron)].corners.into_iter().map(move |corner| {
+    TETRAHEDRA[usize::from(sample.tetrahedron)].corners.map(|corner| {
         let [x, y, z]: [i32; 3] = std::array::from_fn(|a| origin[a] + (corner >> a & 1) as i32);
         halo_index(x, y, z)
     })
 }
 
-/// Sums one block's samples; returns sum w |g|.
-fn splat_block(halo: &Halo<f32>, samples: &[Sample], splat: &mut Splat) -> f64 {
+/// Sums one block's samples; returns sum w |g|. The transpose of [`gradient_at`] begins here: for the recovered gradient vectors are summed, and
+/// differences taken later; for the element's the differences are taken at once and fill the last component.
+fn splat_block(halo: &Halo<f32>, samples: &[Sample], gradient: Gradient, splat: &mut Splat) -> f64 {
     let mut sum = 0.0_f64;
     for sample in samples {
-        let g = recovered_gradient(halo, sample);
+        let g = gradient_at(halo, sample, gradient);
         let length = (g[0] * g[0] + g[1] * g[1] + g[2] * g[2]).sqrt();
         if length <= 0.0 {
             continue;
@@ -81,11 +101,22 @@ fn splat_block(halo: &Halo<f32>, samples: &[Sample], splat: &mut Splat) -> f64 {
         let n = g.map(|c| sample.weight * (c / length));
         let local = sample.local;
         let origin = usize::from(local & 7) + 9 * usize::from(local >> 3 & 7) + 81 * usize::from(local >> 6);
-        for (corner, weight) in TETRAHEDRA[usize::from(sample.tetrahedron)].corners.into_iter().zip(sample.barycentric)
-        {
-            let node = origin + (corner & 1) + 9 * (corner >> 1 & 1) + 81 * (corner >> 2);
-            for axis in 0..3 {
-                splat[node][axis] += weight * n[axis];
+        let tetrahedron = TETRAHEDRA[usize::from(sample.tetrahedron)];
+        let nodes =
+            tetrahedron.corners.map(|corner| origin + (corner & 1) + 9 * (corner >> 1 & 1) + 81 * (corner >> 2));
+        match gradient {
+            Gradient::Element => {
+                for (s, axis) in tetrahedron.axes.into_iter().enumerate() {
+                    splat[nodes[s + 1]][3] += n[axis];
+                    splat[nodes[s]][3] -= n[axis];
+                }
+            }
+            Gradient::Recovered => {
+                for (node, weight) in nodes.into_iter().zip(sample.barycentric) {
+                    for axis in 0..3 {
+                        splat[node][axis] += weight * n[axis];
+                    }
+                }
             }
         }
     }
@@ -93,11 +124,8 @@ fn splat_block(halo: &Halo<f32>, samples: &[Sample], splat: &mut Splat) -> f64 {
 }
 
 /// The vectors at the nodes of block `b`: its own splat and the last layers of the seven blocks before it.
-fn join_splats(level: &Level, b: usize, splats: &[Box<Splat>], vectors: [&mut [f32]; 3]) {
-    let [vx, vy, vz] = vectors;
-    vx.fill(0.0);
-    vy.fill(0.0);
-    vz.fill(0.0);
+fn join_splats(level: &Level, b: usize, splats: &[Box<Splat>], mut out: [&mut [f32]; 4]) {
+    out.iter_mut().for_each(|component| component.fill(0.0));
     for before in 0..8_usize {
         let step: [i32; 3] = std::array::from_fn(|a| -((before >> a & 1) as i32));
         let other = level.blocks.neighbors[b][neighbor_code(step)];
@@ -111,17 +139,18 @@ fn join_splats(level: &Level, b: usize, splats: &[Box<Splat>], vectors: [&mut [f
                 for x in range(0) {
                     let v = splat[x + 9 * y + 81 * z];
                     let node = (x & 7) + 8 * (y & 7) + 64 * (z & 7);
-                    vx[node] += v[0];
-                    vy[node] += v[1];
-                    vz[node] += v[2];
+                    for (component, value) in out.iter_mut().zip(v) {
+                        component[node] += value;
+                    }
                 }
             }
         }
     }
 }
 
-/// rhs = sum over axes of (V(q - e) - V(q + e)) / 2, plus gamma t, at the free nodes. Returns gamma sum t F.
-fn divergence(level: &Level, f: &[f32], vectors: [&[f32]; 3], rhs: &mut [f32]) -> f64 {
+/// Ends the transpose of [`gradient_at`]: adds to `rhs` the sum over axes of (V(q - e) - V(q + e)) / 2 and gamma t, all at the free
+/// nodes. Returns gamma sum t F.
+fn right_hand_side(level: &Level, f: &[f32], vectors: [&[f32]; 3], rhs: &mut [f32]) -> f64 {
     let partial: Vec<f64> = rhs
         .par_chunks_exact_mut(512)
         .enumerate()
@@ -129,19 +158,14 @@ fn divergence(level: &Level, f: &[f32], vectors: [&[f32]; 3], rhs: &mut [f32]) -
         .map_init(
             || [0.0_f32; 2304],
             |halo, (b, rhs)| {
-                rhs.fill(0.0);
                 let free = &level.free[b];
                 let neighbors = &level.blocks.neighbors[b];
                 if neighbors.iter().any(|&n| n != NONE && level.data_block[n as usize] != NONE) {
-                    for (v, step) in vectors.into_iter().zip([1, 16, 192]) {
-                        gather::<f32, 1, 1>(v, neighbors, 0.0, halo);
-                        for row in 0..64 {
-                            let at = halo_index(0, (row & 7) as i32, (row >> 3) as i32);
-                            let (before, after) = (row_at(halo, at - step), row_at(halo, at + step));
-                            let lanes = &LANES[mask_row(free, row & 7, row >> 3) as usize];
-                            for k in 0..8 {
-                                rhs[row * 8 + k] += 0.5 * (before[k] - after[k]) * lanes[k];
-                            }
+                    add_differences(vectors, neighbors, halo, rhs);
+                    for row in 0..64 {
+                        let lanes = &LANES[mask_row(free, row & 7, row >> 3) as usize];
+                        for k in 0..8 {
+                            rhs[row * 8 + k] *= lanes[k];
                         }
                     }
                 }
@@ -167,6 +191,19 @@ fn divergence(level: &Level, f: &[f32], vectors: [&[f32]; 3], rhs: &mut [f32]) -
     partial.into_iter().sum()
 }
 
+fn add_differences(vectors: [&[f32]; 3], neighbors: &[u32; 27], halo: &mut Halo<f32>, rhs: &mut [f32]) {
+    for (v, step) in vectors.into_iter().zip([1, 16, 192]) {
+        gather::<f32, 1, 1>(v, neighbors, 0.0, halo);
+        for row in 0..64 {
+            let at = halo_index(0, (row & 7) as i32, (row >> 3) as i32);
+            let (before, after) = (row_at(halo, at - step), row_at(halo, at + step));
+            for k in 0..8 {
+                rhs[row * 8 + k] += 0.5 * (before[k] - after[k]);
+            }
+        }
+    }
+}
+
 /// The quantiles (5, 50, 95 %) of |g| at the samples, relative to their largest: 1 where the sheet is resolved, small where
 /// two sheets cancel.
 pub(super) fn gradient_lengths(level: &Level, f: &[f32]) -> [f64; 3] {
@@ -177,7 +214,7 @@ pub(super) fn gradient_lengths(level: &Level, f: &[f32]) -> [f64; 3] {
             |halo, d| {
                 let b = level.blocks.keys.binary_search(&level.cells.block_keys[d]).expect("a block of data is stored");
                 gather::<f32, 1, 2>(f, &level.blocks.neighbors[b], 0.0, halo);
-                let length = |s| recovered_gradient(halo, s).iter().map(|c| c * c).sum::<f32>().sqrt();
+                let length = |s| gradient_at(halo, s, level.gradient).iter().map(|c| c * c).sum::<f32>().sqrt();
                 level.samples.of_block[d].iter().map(length).collect::<Vec<_>>()
             },
         )
@@ -186,4 +223,36 @@ pub(super) fn gradient_lengths(level: &Level, f: &[f32]) -> [f64; 3] {
     lengths.par_sort_unstable_by(f32::total_cmp);
     let at = |share: f64| f64::from(lengths[((lengths.len() - 1) as f64 * share) as usize]);
     if lengths.is_empty() { [0.0; 3] } else { [at(0.05), at(0.5), at(0.95)] }
+}
+
+/// The share of samples at which the two gradients disagree because a second sheet is near.
+pub(super) fn thin_share(level: &Level, f: &[f32]) -> f64 {
+    let blocks = &level.blocks;
+    let (thin, all) = level
+        .samples
+        .of_block
+        .par_iter()
+        .zip(&level.cells.block_keys)
+        .map_init(
+            || [0.0_f32; 2304],
+            |halo, (samples, key)| {
+                let b = blocks.keys.binary_search(key).expect("a block of data is stored");
+                gather::<f32, 1, 2>(f, &blocks.neighbors[b], 0.0, halo);
+                let is_thin = |s: &&Sample| {
+                    !agree(gradient_at(halo, s, Gradient::Element), gradient_at(halo, s, Gradient::Recovered))
+                };
+                (samples.iter().filter(is_thin).count(), samples.len())
+            },
+        )
+        .reduce(|| (0, 0), |a, b| (a.0 + b.0, a.1 + b.1));
+    thin as f64 / all.max(1) as f64
+}
+
+/// Whether the recovered gradient points within 70 degrees of the element's and is at least a fifth as long: across a thin wall it turns
+/// over or nearly vanishes, while noise turns it by a few degrees.
+fn agree(element: [f32; 3], recovered: [f32; 3]) -> bool {
+    let dot = |a: [f32; 3], b: [f32; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    let along = dot(element, recovered);
+    let (ee, rr) = (dot(element, element), dot(recovered, recovered));
+    along > 0.0 && along * along >= 0.1 * ee * rr && rr >= 0.04 * ee
 }

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::prior::Prior;
+use super::prolong::Solved;
 use super::samples::Samples;
 use super::stencil::Stencil;
 use crate::domain::{Blocks, Cells, Lattice, LatticePoints, Mask, NONE};
@@ -52,6 +53,15 @@ impl FixedFaces {
     }
 }
 
+/// Which gradient enters N; see [`super::gradient`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Gradient {
+    /// That of F on the sample's own tetrahedron.
+    Element,
+    /// Central differences at the nodes, interpolated.
+    Recovered,
+}
+
 /// A level, ready to be solved on.
 pub(super) struct Level {
     pub(super) index: u32,
@@ -66,6 +76,8 @@ pub(super) struct Level {
     pub(super) samples: Samples,
     pub(super) stencil: Stencil,
     pub(super) prior: Option<Prior>,
+    /// The element's gradient, until set otherwise.
+    pub(super) gradient: Gradient,
 }
 
 /// What stays the same from level to level.
@@ -91,7 +103,12 @@ impl Level {
         let samples = Samples::new(points, &cells, &weights, shift);
         let stencil = Stencil::new(&blocks, &data_block, points, &cells, &weights, shift, params.alpha);
         let prior = params.column_prior.then(|| Prior::new(&blocks, &cells, &free));
-        Self { index, blocks, known, free, cells, data_block, samples, stencil, prior }
+        Self { index, blocks, known, free, cells, data_block, samples, stencil, prior, gradient: Gradient::Element }
+    }
+
+    /// Keeps F and lets go of the rest.
+    pub(super) fn into_solved(self, f: Vec<f32>) -> Solved {
+        Solved { index: self.index, blocks: self.blocks, known: self.known, f }
     }
 
     /// Number of stored values.

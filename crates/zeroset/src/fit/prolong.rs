@@ -2,10 +2,10 @@
 
 use rayon::prelude::*;
 
-use super::level::{FixedFaces, Level, Nodes, data_blocks};
+use super::level::{FixedFaces, Nodes, data_blocks};
 use crate::domain::{
-    Blocks, Cells, Lattice, LatticePoints, Mask, NONE, TETRAHEDRA, block_key, dilate, mask_get, mask_set,
-    neighbor_code, tetrahedron_of,
+    Blocks, Cells, Lattice, LatticePoints, Mask, NONE, TETRAHEDRA, block_key, dilate, dilate_box, mask_get, mask_set,
+    neighbor_code, shift, tetrahedron_of,
 };
 
 /// Steps from the data, or from the zero set of the prolonged F, to the rim of the band.
@@ -14,6 +14,16 @@ use crate::domain::{
 /// that was measured.
 const BAND: usize = 3;
 
+/// F of a level that has been solved.
+pub(super) struct Solved {
+    pub(super) index: u32,
+    pub(super) blocks: Blocks,
+    /// Nodes that have a value.
+    pub(super) known: Vec<Mask>,
+    /// 512 values a block.
+    pub(super) f: Vec<f32>,
+}
+
 /// Values of the coarse level around one fine block, at coarse nodes -1..=5 of the fine block's own corner.
 struct Parent {
     values: [f32; 7 * 7 * 7],
@@ -21,7 +31,7 @@ struct Parent {
 
 impl Parent {
     /// Coarse values around the fine block at `fine`; NaN where there is none.
-    fn new(coarse: &Level, f: &[f32], fine: [u32; 3]) -> Option<Self> {
+    fn new(coarse: &Solved, fine: [u32; 3]) -> Option<Self> {
         let b = coarse.blocks.find(fine.map(|c| c >> 1))?;
         let corner: [i32; 3] = fine.map(|c| 4 * (c & 1) as i32);
         let mut values = [f32::NAN; 343];
@@ -36,7 +46,7 @@ impl Parent {
                     }
                     let local = (node[0] & 7 | (node[1] & 7) << 3 | (node[2] & 7) << 6) as usize;
                     if mask_get(&coarse.known[other as usize], local) {
-                        values[(x + 7 * y + 49 * z) as usize] = f[other as usize * 512 + local];
+                        values[(x + 7 * y + 49 * z) as usize] = coarse.f[other as usize * 512 + local];
                     }
                 }
             }
@@ -70,15 +80,14 @@ pub(super) fn band(
     lattice: &Lattice,
     points: &LatticePoints,
     cells: Cells,
-    coarse: &Level,
-    f: &[f32],
+    coarse: &Solved,
     faces: FixedFaces,
 ) -> Nodes {
     let index = coarse.index + 1;
     let extent = lattice.blocks_at(index);
     let mut keys: Vec<u64> = (0..coarse.blocks.len())
         .into_par_iter()
-        .filter(|&b| has_both_signs(coarse, f, b))
+        .filter(|&b| has_both_signs(coarse, b))
         .flat_map_iter(|b| {
             let c = coarse.blocks.coordinates[b].map(|c| 2 * c);
             (0..8_u32).map(move |child| block_key([c[0] + (child & 1), c[1] + (child >> 1 & 1), c[2] + (child >> 2)]))
@@ -95,7 +104,7 @@ pub(super) fn band(
         .with_min_len(8)
         .map(|b| {
             let mut mask = data_nodes(&blocks, b, &data_block, points, &cells, shift);
-            if let Some(parent) = Parent::new(coarse, f, blocks.coordinates[b]) {
+            if let Some(parent) = Parent::new(coarse, blocks.coordinates[b]) {
                 crossing_nodes(&parent, &mut mask);
             }
             mask
@@ -112,10 +121,10 @@ pub(super) fn band(
     });
     let known = dilate(&blocks, &free);
     drop(data_block);
-    keep_blocks_in_use(blocks, known, free, cells)
+    keep_nodes_in_use(blocks, known, free, cells)
 }
 
-fn keep_blocks_in_use(blocks: Blocks, known: Vec<Mask>, free: Vec<Mask>, cells: Cells) -> Nodes {
+fn keep_nodes_in_use(blocks: Blocks, known: Vec<Mask>, free: Vec<Mask>, cells: Cells) -> Nodes {
     let used: Vec<usize> = (0..blocks.len()).filter(|&b| known[b] != [0; 8]).collect();
     let keys = used.iter().map(|&b| blocks.keys[b]).collect();
     Nodes {
@@ -127,7 +136,7 @@ fn keep_blocks_in_use(blocks: Blocks, known: Vec<Mask>, free: Vec<Mask>, cells: 
 }
 
 /// Whether F changes sign among the known nodes of block `b` and the first layer of those after it.
-fn has_both_signs(level: &Level, f: &[f32], b: usize) -> bool {
+fn has_both_signs(level: &Solved, b: usize) -> bool {
     let (mut negative, mut positive) = (false, false);
     for after in 0..8_usize {
         let step: [i32; 3] = std::array::from_fn(|a| (after >> a & 1) as i32);
@@ -141,7 +150,7 @@ fn has_both_signs(level: &Level, f: &[f32], b: usize) -> bool {
                 for x in range(0) {
                     let local = x | y << 3 | z << 6;
                     if mask_get(&level.known[other as usize], local) {
-                        let inside = f[other as usize * 512 + local] < 0.0;
+                        let inside = level.f[other as usize * 512 + local] < 0.0;
                         negative |= inside;
                         positive |= !inside;
                     }
@@ -223,10 +232,10 @@ fn crossing_nodes(parent: &Parent, mask: &mut Mask) {
 }
 
 /// F of the coarse level at every known node of the fine one; exact, because P1 on a level is contained in P1 on the next.
-pub(super) fn prolong(coarse: &Level, f: &[f32], fine: &Blocks, known: &[Mask]) -> Vec<f32> {
+pub(super) fn prolong(coarse: &Solved, fine: &Blocks, known: &[Mask]) -> Vec<f32> {
     let mut values = vec![0.0; fine.len() * 512];
     values.par_chunks_exact_mut(512).enumerate().with_min_len(8).for_each(|(b, values)| {
-        let parent = Parent::new(coarse, f, fine.coordinates[b]);
+        let parent = Parent::new(coarse, fine.coordinates[b]);
         for (local, value) in values.iter_mut().enumerate() {
             if !mask_get(&known[b], local) {
                 continue;
@@ -238,4 +247,91 @@ pub(super) fn prolong(coarse: &Level, f: &[f32], fine: &Blocks, known: &[Mask]) 
         }
     });
     values
+}
+
+/// Adds nodes until every cell around a change of sign is known whole, with values of the coarse level.
+///
+/// While a level is solved the zero set moves, and may come to lie against the rim of the band: the tetrahedra there would be cut
+/// off and leave holes in the surface. Beyond the rim F is what it was before, so the coarse values continue it.
+pub(super) fn complete(mut level: Solved, coarse: &Solved) -> Solved {
+    // Each round follows the zero set by one node; that of the coarse level lies in the band, so few rounds are needed.
+    for _ in 0..BAND {
+        let crossing: Vec<Mask> = (0..level.blocks.len()).into_par_iter().map(|b| sign_changes(&level, b)).collect();
+        let keys = Blocks::grown_keys(&keys_on_rim(&level, &crossing), level.blocks.extent);
+        let mut all: Vec<u64> = level.blocks.keys.iter().copied().chain(keys).collect();
+        all.par_sort_unstable();
+        all.dedup();
+        let grown = Blocks::new(all, level.blocks.extent);
+        let place: Vec<Option<usize>> =
+            grown.keys.par_iter().map(|k| level.blocks.keys.binary_search(k).ok()).collect();
+        let spread = |masks: &[Mask]| -> Vec<Mask> { place.iter().map(|p| p.map_or([0; 8], |b| masks[b])).collect() };
+        let needed = dilate_box(&grown, &spread(&crossing));
+        let old = spread(&level.known);
+        let missing: Vec<Mask> = needed.iter().zip(&old).map(|(n, k)| std::array::from_fn(|z| n[z] & !k[z])).collect();
+        if missing.iter().all(|m| *m == [0; 8]) {
+            break;
+        }
+        let mut f = prolong(coarse, &grown, &missing);
+        f.par_chunks_exact_mut(512).enumerate().for_each(|(b, f)| {
+            if let Some(from) = place[b] {
+                for (local, value) in f.iter_mut().enumerate() {
+                    if mask_get(&old[b], local) {
+                        *value = level.f[from * 512 + local];
+                    }
+                }
+            }
+        });
+        let known = old.iter().zip(&missing).map(|(k, m)| std::array::from_fn(|z| k[z] | m[z])).collect();
+        let nodes = keep_blocks_in_use(grown, known, f);
+        level = Solved { index: level.index, ..nodes };
+    }
+    level
+}
+
+/// The nodes of block `b` at either end of an axis edge between known nodes along which F changes sign.
+fn sign_changes(level: &Solved, b: usize) -> Mask {
+    let inside = |b: usize| -> Mask {
+        let mut mask = [0; 8];
+        for (local, value) in level.f[b * 512..(b + 1) * 512].iter().enumerate() {
+            if *value < 0.0 {
+                mask_set(&mut mask, local);
+            }
+        }
+        mask
+    };
+    let mut crossing = [0; 8];
+    let own = inside(b);
+    for axis in 0..3 {
+        for ahead in [false, true] {
+            let mut step = [0; 3];
+            step[axis] = if ahead { 1 } else { -1 };
+            let other = level.blocks.neighbors[b][neighbor_code(step)];
+            let (far_known, far_inside) =
+                if other == NONE { ([0; 8], [0; 8]) } else { (level.known[other as usize], inside(other as usize)) };
+            let known = shift(&level.known[b], &far_known, axis, ahead);
+            let sign = shift(&own, &far_inside, axis, ahead);
+            for z in 0..8 {
+                crossing[z] |= (own[z] ^ sign[z]) & known[z] & level.known[b][z];
+            }
+        }
+    }
+    crossing
+}
+
+/// The blocks in which a change of sign lies on the outermost nodes.
+fn keys_on_rim(level: &Solved, crossing: &[Mask]) -> Vec<u64> {
+    const INNER: u64 = 0x007e_7e7e_7e7e_7e00;
+    let on_rim = |m: &Mask| m[0] | m[7] != 0 || m[1..7].iter().any(|w| w & !INNER != 0);
+    (0..crossing.len()).filter(|&b| on_rim(&crossing[b])).map(|b| level.blocks.keys[b]).collect()
+}
+
+fn keep_blocks_in_use(blocks: Blocks, known: Vec<Mask>, f: Vec<f32>) -> Solved {
+    let used: Vec<usize> = (0..blocks.len()).filter(|&b| known[b] != [0; 8]).collect();
+    let keys = used.iter().map(|&b| blocks.keys[b]).collect();
+    let mut kept = Vec::with_capacity(used.len() * 512);
+    for &b in &used {
+        kept.extend_from_slice(&f[b * 512..(b + 1) * 512]);
+    }
+    let known = used.iter().map(|&b| known[b]).collect();
+    Solved { index: 0, blocks: Blocks::new(keys, blocks.extent), known, f: kept }
 }

@@ -14,7 +14,7 @@ pub(super) struct Sample {
     /// Place of the cell in its block, `x | y << 3 | z << 6`.
     pub(super) local: u16,
     /// Index of the tetrahedron.
-    pub(super) tetrahedron: u16,
+    pub(super) tetrahedron: u8,
 }
 
 /// The samples of a level, grouped as [`Cells`] groups its blocks.
@@ -46,7 +46,7 @@ impl Samples {
                             weight: count as f32 * weights[cell],
                             barycentric: sum.map(|s| s / count as f32),
                             local: cells.local[cell],
-                            tetrahedron: t as u16,
+                            tetrahedron: t as u8,
                         });
                     }
                 }
