@@ -33,7 +33,7 @@ use crate::monitor::Cancelled;
 #[derive(Debug, thiserror::Error)]
 pub enum ReconstructError {
     /// Fewer distinct points than a surface needs.
-    #[error("{found} points are too few to fit a surface; give at least {needed}")]
+    #[error("too few points to fit a surface: {found}; give at least {needed}")]
     TooFewPoints {
         /// Points found.
         found: usize,
@@ -72,6 +72,9 @@ pub enum ReconstructError {
         /// A resolution that fits.
         possible: f64,
     },
+    /// The scene is designed but not built.
+    #[error("the scene free is not available yet; give --scene object, terrain or airborne")]
+    SceneNotThere,
     /// The fit found no surface at all.
     #[error("no surface was found; give a finer --resolution or another --scene")]
     NoSurface,

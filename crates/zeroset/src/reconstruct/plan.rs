@@ -5,7 +5,6 @@ use serde::Serialize;
 use super::scene::SceneEvidence;
 use super::{ReconstructError, Up};
 use crate::cloud::{Cloud, Spacing};
-use crate::domain::LatticeError;
 use crate::fit::{FitError, FitParams, Prepared, Scene};
 use crate::monitor::{Monitor, check};
 
@@ -158,14 +157,24 @@ pub fn plan<'a>(
     }
     let upright: Vec<[f64; 3]> = cloud.points.iter().map(|&p| params.up.upright(p)).collect();
     let spacing = Spacing::of(cloud).ok_or(ReconstructError::Degenerate { shape: "in one place" })?.median;
-    if on_one_line(&upright) {
-        return Err(ReconstructError::Degenerate { shape: "on one line" });
-    }
     let (low, high) = bounds(&cloud.points);
     let extent = (0..3).map(|a| high[a] - low[a]).fold(0.0, f64::max);
     if params.resolution == Resolution::Auto && extent > ASTRAY * spacing {
         return Err(ReconstructError::Astray { extent, spacing });
     }
+    if on_one_line(&upright) {
+        return Err(ReconstructError::Degenerate { shape: "on one line" });
+    }
+    if params.scene == Some(Scene::Free) {
+        return Err(ReconstructError::SceneNotThere);
+    }
+    let trim_length = match params.trim {
+        Trim::Length(value) if !(value.is_finite() && value > 0.0) => {
+            return Err(ReconstructError::Length { name: "trim", value });
+        }
+        Trim::Length(length) => Some(length),
+        Trim::Auto | Trim::Off => None,
+    };
     check(monitor)?;
     let (scene, scene_reason) = params
         .scene
@@ -180,38 +189,42 @@ pub fn plan<'a>(
         }
     };
     monitor.stage("sorting the points");
+    let over_budget = |resolution: f64, bytes: f64| ReconstructError::Memory {
+        resolution,
+        needed_gb: bytes / 1e9,
+        allowed_gb: params.memory as f64 / 1e9,
+        possible: resolution * (bytes / params.memory as f64).sqrt(),
+    };
     let mut resolution = wanted;
     let prepared = loop {
-        let prepared = Prepared::new(&upright, &fit(resolution)).map_err(FitError::from)?;
-        check(monitor)?;
-        let needed = expected_bytes(prepared.occupied_cells(), cloud.len());
-        if needed <= params.memory as f64 {
-            break prepared;
+        // Before anything is sorted: the surface between the points is there however few cells hold one.
+        let least = expected_bytes(surface_cells(cloud.len(), spacing, resolution), cloud.len());
+        let needed = if least > params.memory as f64 {
+            least
+        } else {
+            let prepared = Prepared::new(&upright, &fit(resolution)).map_err(FitError::from)?;
+            check(monitor)?;
+            let cells = prepared.occupied_cells().max(surface_cells(cloud.len(), spacing, resolution));
+            let needed = expected_bytes(cells, cloud.len());
+            if needed <= params.memory as f64 {
+                break prepared;
+            }
+            needed
+        };
+        let coarser = resolution * (needed / params.memory as f64).sqrt().max(1.05);
+        if params.resolution != Resolution::Auto || coarser > extent {
+            return Err(over_budget(resolution, needed));
         }
-        // The surface has dimension two, so cells fall with the square of the spacing.
-        let factor = (needed / params.memory as f64).sqrt().max(1.05);
-        if params.resolution != Resolution::Auto {
-            let gb = |bytes: f64| bytes / 1e9;
-            return Err(ReconstructError::Memory {
-                resolution,
-                needed_gb: gb(needed),
-                allowed_gb: gb(params.memory as f64),
-                possible: resolution * factor,
-            });
-        }
-        resolution *= factor;
-        if resolution > extent {
-            return Err(FitError::from(LatticeError::Spacing(resolution)).into());
-        }
+        resolution = coarser;
     };
     let trim = match (params.trim, scene) {
         (Trim::Off, _) | (Trim::Auto, Scene::Object | Scene::Free) => None,
         (Trim::Auto, Scene::Terrain | Scene::Airborne) => Some((TRIM_REL * spacing).max(8.0 * resolution)),
-        (Trim::Length(length), _) if length.is_finite() && length > 0.0 => Some(length),
-        (Trim::Length(value), _) => return Err(ReconstructError::Length { name: "trim", value }),
+        (Trim::Length(_), _) => trim_length,
     };
     let offset = cloud.world_from_local;
     let occupied_cells = prepared.occupied_cells();
+    let cells = occupied_cells.max(surface_cells(cloud.len(), spacing, resolution));
     let report = PlanReport {
         points: cloud.len(),
         bounds: [low, high].map(|corner| std::array::from_fn(|a| corner[a] + offset[a])),
@@ -223,13 +236,18 @@ pub fn plan<'a>(
         capped_by_memory: resolution > wanted,
         levels: prepared.levels(),
         occupied_cells,
-        expected_nodes: 14 * occupied_cells as u64,
-        expected_bytes: expected_bytes(occupied_cells, cloud.len()) as u64,
+        expected_nodes: 14 * cells as u64,
+        expected_bytes: expected_bytes(cells, cloud.len()) as u64,
         trim,
         screening: params.screening,
         attributes: params.attributes,
     };
     Ok(Plan { report, cloud, prepared, seconds: start.elapsed().as_secs_f64() })
+}
+
+/// Cells that the surface crosses, from the area that the points stand for.
+fn surface_cells(points: usize, spacing: f64, resolution: f64) -> usize {
+    (1.5 * points as f64 * (spacing / resolution).powi(2)).min(1e15) as usize
 }
 
 fn expected_bytes(cells: usize, points: usize) -> f64 {
