@@ -1,3 +1,71 @@
 //! Chores of the repository: `cargo xtask CHORE`.
+//!
+//! | chore | does |
+//! |---|---|
+//! | `check` | formatting, lints and documentation, all with warnings as errors |
+//!
+//! The exit code is 0 if all went well, 1 if a step failed, and 2 for wrong usage.
 
-fn main() {}
+use std::process::{Command, ExitCode};
+
+const USAGE: &str = "\
+Usage: cargo xtask CHORE
+
+Chores:
+  check  formatting, lints and documentation, all with warnings as errors";
+
+/// One run of cargo.
+struct Step {
+    arguments: &'static [&'static str],
+    environment: &'static [(&'static str, &'static str)],
+}
+
+const CHECK: [Step; 3] = [
+    Step { arguments: &["fmt", "--all", "--check"], environment: &[] },
+    Step {
+        arguments: &["clippy", "--locked", "--workspace", "--all-targets", "--", "-D", "warnings"],
+        environment: &[],
+    },
+    Step {
+        arguments: &["doc", "--locked", "--workspace", "--no-deps"],
+        environment: &[("RUSTDOCFLAGS", "-D warnings")],
+    },
+];
+
+fn main() -> ExitCode {
+    let arguments: Vec<_> = std::env::args_os().skip(1).collect();
+    let words: Vec<_> = arguments.iter().map(|word| word.to_str()).collect();
+    let outcome = match words[..] {
+        [Some("check")] => CHECK.iter().try_for_each(run),
+        [Some("help" | "-h" | "--help")] => {
+            println!("{USAGE}");
+            Ok(())
+        }
+        _ => {
+            eprintln!("{USAGE}");
+            return ExitCode::from(2);
+        }
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(why) => {
+            eprintln!("error: {why}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Runs a step in the root of the repository; the error says which one failed.
+fn run(step: &Step) -> Result<(), String> {
+    // Cargo tells its children which cargo it is. A built xtask called by hand takes the one on the path.
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let line = format!("cargo {}", step.arguments.join(" "));
+    eprintln!("> {line}");
+    let status = Command::new(cargo)
+        .args(step.arguments)
+        .envs(step.environment.iter().copied())
+        .current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
+        .status()
+        .map_err(|e| format!("`{line}` cannot be started: {e}"))?;
+    if status.success() { Ok(()) } else { Err(format!("`{line}` failed: {status}")) }
+}

@@ -344,10 +344,7 @@ impl Cascade<'_> {
         let steps = STEPS[(index as usize).min(STEPS.len() - 1)];
         let (f, report) = self.iterate(&level, f, steps, start)?;
         let solved = complete(level.into_solved(f), &coarse.solved);
-        Ok(Fitted {
-            solved,
-            report: LevelReport { seconds: start.elapsed().as_secs_f64(), thin_share, ..report },
-        })
+        Ok(Fitted { solved, report: LevelReport { seconds: start.elapsed().as_secs_f64(), thin_share, ..report } })
     }
 
     /// Inverse power steps on a level until R rests.
