@@ -84,6 +84,8 @@ pub enum FitError {
 /// One step of a level.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Iteration {
+    /// The gradient in N. R never rises from step to step with the same one; from one gradient to the other it is not comparable.
+    pub gradient: Gradient,
     /// R(F) per occupied cell before the step.
     pub rayleigh_quotient: f64,
     /// Steps of conjugate gradients.
@@ -335,10 +337,7 @@ impl Cascade<'_> {
         let steps = STEPS[(index as usize).min(STEPS.len() - 1)];
         let (f, report) = self.iterate(&level, f, steps, start)?;
         let solved = complete(level.into_solved(f), &coarse.solved);
-        Ok(Fitted {
-            solved,
-            report: LevelReport { seconds: start.elapsed().as_secs_f64(), thin_share, ..report },
-        })
+        Ok(Fitted { solved, report: LevelReport { seconds: start.elapsed().as_secs_f64(), thin_share, ..report } })
     }
 
     /// Inverse power steps on a level until R rests.
@@ -366,7 +365,7 @@ impl Cascade<'_> {
             last = quotient;
             let scale = rescale_and_residual(level, &mut f, &mut r, &mut q, norm / energy);
             let solver_steps = conjugate_gradients(level, &mut f, &mut r, &mut p, &mut q, scale, SOLVE);
-            iterations.push(Iteration { rayleigh_quotient: quotient, solver_steps });
+            iterations.push(Iteration { gradient: level.gradient, rayleigh_quotient: quotient, solver_steps });
         }
         let report = LevelReport {
             level: level.index,
