@@ -53,6 +53,8 @@ fn coincident(mesh: &Mesh) -> usize {
     places.windows(2).filter(|w| w[0] == w[1]).count()
 }
 
+type Function = fn([f64; 3]) -> f64;
+
 fn sphere(p: [f64; 3]) -> f64 {
     vec3::norm(vec3::sub(p, [0.013, -0.027, 0.041])) - 0.8
 }
@@ -64,7 +66,7 @@ fn torus(p: [f64; 3]) -> f64 {
 #[test]
 fn spheres_and_tori_are_closed_and_have_their_genus_and_volume() {
     let pi = std::f64::consts::PI;
-    let cases: [(&str, fn([f64; 3]) -> f64, u64, f64); 2] =
+    let cases: [(&str, Function, u64, f64); 2] =
         [("sphere", sphere, 0, 4.0 / 3.0 * pi * 0.512), ("torus", torus, 1, 2.0 * pi * pi * 0.6 * 0.0625)];
     for (what, f, genus, volume) in cases {
         let (mesh, report) = contour(&field_of(40.0, f), |_| true);
