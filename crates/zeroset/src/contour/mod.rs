@@ -27,5 +27,8 @@ mod rings;
 mod split;
 mod triangulate;
 
+#[cfg(test)]
+mod tests;
+
 pub use dual::{ContourReport, contour};
 pub use outline::ColumnOutline;

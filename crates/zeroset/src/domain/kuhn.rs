@@ -62,9 +62,9 @@ mod tests {
                     let b = barycentric(t, f);
                     assert!(b.iter().all(|&w| (0.0..=1.0).contains(&w)), "{f:?} {b:?}");
                     assert!((b.iter().sum::<f32>() - 1.0).abs() < 1e-6);
-                    for axis in 0..3 {
+                    for (axis, fraction) in f.into_iter().enumerate() {
                         let x: f32 = (0..4).map(|v| b[v] * ((TETRAHEDRA[t].corners[v] >> axis) & 1) as f32).sum();
-                        assert!((x - f[axis]).abs() < 1e-6);
+                        assert!((x - fraction).abs() < 1e-6);
                     }
                 }
             }

@@ -84,6 +84,8 @@ pub enum FitError {
 /// One step of a level.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Iteration {
+    /// The gradient in N. R never rises from step to step with the same one; from one gradient to the other it is not comparable.
+    pub gradient: Gradient,
     /// R(F) per occupied cell before the step.
     pub rayleigh_quotient: f64,
     /// Steps of conjugate gradients.
@@ -372,7 +374,7 @@ impl Cascade<'_> {
             last = quotient;
             let scale = rescale_and_residual(level, &mut f, &mut r, &mut q, norm / energy);
             let solver_steps = conjugate_gradients(level, &mut f, &mut r, &mut p, &mut q, scale, SOLVE);
-            iterations.push(Iteration { rayleigh_quotient: quotient, solver_steps });
+            iterations.push(Iteration { gradient: level.gradient, rayleigh_quotient: quotient, solver_steps });
         }
         let report = LevelReport {
             level: level.index,

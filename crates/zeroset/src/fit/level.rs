@@ -1,6 +1,7 @@
 //! One level of the cascade: which nodes exist, which may move, and what the data say about them.
 
 use rayon::prelude::*;
+use serde::Serialize;
 
 use super::prior::Prior;
 use super::prolong::Solved;
@@ -53,9 +54,10 @@ impl FixedFaces {
     }
 }
 
-/// Which gradient enters N; see [`super::gradient`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Gradient {
+/// Which gradient enters N.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Gradient {
     /// That of F on the sample's own tetrahedron.
     Element,
     /// Central differences at the nodes, interpolated.

@@ -37,4 +37,8 @@ mod seed;
 mod solve;
 mod stencil;
 
+#[cfg(test)]
+mod tests;
+
 pub use cascade::{FitError, FitParams, FitReport, Iteration, LevelReport, Prepared, Scene, fit};
+pub use level::Gradient;
