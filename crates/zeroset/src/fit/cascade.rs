@@ -113,6 +113,8 @@ pub struct LevelReport {
     pub other_rayleigh_quotient: Option<f64>,
     /// Share of the samples that have a second sheet within about a cell; `None` on the first levels.
     pub thin_share: Option<f64>,
+    /// Whether the body was taken for thin-walled on this level.
+    pub thin_walled: bool,
     /// Step by step.
     pub iterations: Vec<Iteration>,
     /// R(F) per occupied cell at the end.
@@ -136,6 +138,9 @@ const SOLVE: SolveParams = SolveParams { tolerance: 1e-3, max_steps: 200 };
 /// A body is thin-walled where at least this share of the samples of the last dense level has a second sheet within about a cell.
 /// Plates with walls of half a cell to a cell have 0.11 to 0.59 there, bodies without thin walls up to 0.08 (at sharp edges).
 const THIN_SHARE: f64 = 0.1;
+/// Besides, with the recovered gradient the sheets must cancel somewhere: the weak end (5 %) of |grad F| at the data is below
+/// this part of the median. Plates: 0.45 to 0.55. Bodies without thin walls: 0.65 and more.
+const THIN_GRADIENT_REL: f64 = 0.6;
 /// A new seed is tried on a thin-walled body while a level has at most this many nodes across: it can hardly be won back later.
 const MAX_THIN_SEED_NODES: u32 = 192;
 /// A level is at rest when a step lowers R by less than this share.
@@ -243,7 +248,7 @@ impl Cascade<'_> {
             self.monitor.share(share(index));
             self.monitor.stage(&format!("fitting level {} of {levels}", index + 1));
             report.levels.push(current.report.clone());
-            let thin = current.report.thin_share.is_some_and(|share| share >= THIN_SHARE);
+            let thin = current.report.thin_walled;
             let most = if thin { MAX_THIN_SEED_NODES } else { MAX_SEED_NODES };
             current =
                 if self.is_dense(index, most) { self.climb(current, index)? } else { self.refined(&current, index)? };
@@ -266,11 +271,7 @@ impl Cascade<'_> {
         let cells = Cells::new(&self.lattice, &self.points, index);
         let params = self.level_params();
         let nodes = Nodes::dense(&self.lattice, cells, index, params.faces);
-        let mut level = Level::new(&self.lattice, &self.points, index, nodes, &params);
-        if self.is_open() {
-            level.gradient = Gradient::Recovered;
-        }
-        level
+        Level::new(&self.lattice, &self.points, index, nodes, &params)
     }
 
     /// Seeds anew on a dense level and iterates to rest.
@@ -304,21 +305,22 @@ impl Cascade<'_> {
 
     /// Ends a dense level. On the last one, unless walls are thin, F goes on to rest with the recovered gradient.
     fn settled(&self, mut level: Level, f: Vec<f32>, report: LevelReport, start: Instant) -> Result<Fitted, FitError> {
-        if self.is_open() || self.is_dense(level.index + 1, MAX_SEED_NODES) {
+        if self.is_dense(level.index + 1, MAX_SEED_NODES) {
             return Ok(Fitted { solved: level.into_solved(f), report });
         }
         let thin = thin_share(&level, &f);
-        let report = LevelReport { thin_share: Some(thin), ..report };
-        if thin >= THIN_SHARE {
+        level.gradient = Gradient::Recovered;
+        let (smooth, last) = self.iterate(&level, f.clone(), STEPS[1], start)?;
+        let [weak, usual, _] = last.gradient_quantiles;
+        if !self.is_open() && thin >= THIN_SHARE && weak < THIN_GRADIENT_REL * usual {
+            let report = LevelReport { thin_share: Some(thin), thin_walled: true, ..report };
             return Ok(Fitted { solved: level.into_solved(f), report });
         }
-        level.gradient = Gradient::Recovered;
-        let (f, last) = self.iterate(&level, f, STEPS[1], start)?;
         let mut iterations = report.iterations;
         iterations.extend(last.iterations);
-        let LevelReport { seeded, other_rayleigh_quotient, thin_share, .. } = report;
-        let report = LevelReport { seeded, other_rayleigh_quotient, thin_share, iterations, ..last };
-        Ok(Fitted { solved: level.into_solved(f), report })
+        let LevelReport { seeded, other_rayleigh_quotient, .. } = report;
+        let report = LevelReport { seeded, other_rayleigh_quotient, thin_share: Some(thin), iterations, ..last };
+        Ok(Fitted { solved: level.into_solved(smooth), report })
     }
 
     /// Ground has one sheet nearly everywhere; what thin share it has comes from trees, which are no walls.
@@ -338,8 +340,8 @@ impl Cascade<'_> {
         let params = self.level_params();
         let nodes = band(&self.lattice, &self.points, cells, &coarse.solved, params.faces);
         let mut level = Level::new(&self.lattice, &self.points, index, nodes, &params);
-        let thin_share = coarse.report.thin_share;
-        if thin_share.is_none_or(|share| share < THIN_SHARE) {
+        let LevelReport { thin_share, thin_walled, .. } = coarse.report;
+        if !thin_walled {
             level.gradient = Gradient::Recovered;
         }
         let f = prolong(&coarse.solved, &level.blocks, &level.known);
@@ -386,6 +388,7 @@ impl Cascade<'_> {
             seeded: false,
             other_rayleigh_quotient: None,
             thin_share: None,
+            thin_walled: false,
             iterations,
             rayleigh_quotient: quotient,
             gradient_quantiles: gradient_lengths(level, &f),
