@@ -271,7 +271,11 @@ impl Cascade<'_> {
         let cells = Cells::new(&self.lattice, &self.points, index);
         let params = self.level_params();
         let nodes = Nodes::dense(&self.lattice, cells, index, params.faces);
-        Level::new(&self.lattice, &self.points, index, nodes, &params)
+        let mut level = Level::new(&self.lattice, &self.points, index, nodes, &params);
+        if self.is_open() {
+            level.gradient = Gradient::Recovered;
+        }
+        level
     }
 
     /// Seeds anew on a dense level and iterates to rest.
@@ -305,7 +309,7 @@ impl Cascade<'_> {
 
     /// Ends a dense level. On the last one, unless walls are thin, F goes on to rest with the recovered gradient.
     fn settled(&self, mut level: Level, f: Vec<f32>, report: LevelReport, start: Instant) -> Result<Fitted, FitError> {
-        if self.is_dense(level.index + 1, MAX_SEED_NODES) {
+        if self.is_open() || self.is_dense(level.index + 1, MAX_SEED_NODES) {
             return Ok(Fitted { solved: level.into_solved(f), report });
         }
         let thin = thin_share(&level, &f);
