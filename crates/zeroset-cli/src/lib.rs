@@ -27,6 +27,11 @@ mod report;
 mod sample;
 mod table;
 
+/// Compiles the examples of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;
+
 use std::ffi::OsString;
 use std::process::ExitCode;
 
