@@ -166,8 +166,8 @@ fn wall_lean(mesh: &Mesh, truth: &Mesh, cell: f64) -> (f64, f64) {
 #[test]
 fn walls_that_were_hardly_scanned_are_upright() {
     let scene = Sample::new(SceneKind::AirborneCity, 1);
-    let cell = 0.0066;
-    let (mesh, _) = run(&scene.points(50_000, 0.001, 1), Scene::Airborne, cell, |_| ());
+    let cell = 0.0047;
+    let (mesh, _) = run(&scene.points(100_000, 0.001, 1), Scene::Airborne, cell, |_| ());
     let _ = sound(&mesh, "airborne city");
     let (signed, absolute) = wall_lean(&mesh, &scene.truth, cell);
     println!("airborne city: walls lean by {signed:.2} degrees, {absolute:.2} without sign");
