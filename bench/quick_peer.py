@@ -6,7 +6,8 @@ then held against the exact truth by `zeroset compare`.
 
 Both get the same finest cell. Open3D's path: normals from the 30 nearest neighbours, oriented over the tangent planes
 of 30 neighbours, screened Poisson at the depth whose cells have that size (its cube is widened to make them exactly
-so), and the vertices of lowest density (1.5 %) taken away. zeroset gets the raw points and its defaults.
+so), the surface cut to the box of the points, and the vertices of lowest density (1.5 %) taken away. zeroset gets the
+raw points and its defaults.
 
     python bench/quick_peer.py
     python bench/quick_peer.py --kind airborne-city --points 100000
@@ -53,7 +54,12 @@ def open3d_path(cloud, mesh, cell, stages):
     scale = cell * 2**depth / extent
     surface, density = open3d.geometry.TriangleMesh.create_from_point_cloud_poisson(points, depth=depth, scale=scale)
     done("poisson")
-    density = numpy.asarray(density)
+    # Without the cut the sheet beyond the box would be held against Open3D.
+    density, vertices = numpy.asarray(density), numpy.asarray(surface.vertices)
+    low, high = points.get_min_bound(), points.get_max_bound()
+    beyond = ((vertices < low - cell) | (vertices > high + cell)).any(axis=1)
+    surface.remove_vertices_by_mask(beyond)
+    density = density[~beyond]
     surface.remove_vertices_by_mask(density < numpy.quantile(density, TRIM))
     done("trim")
     open3d.io.write_triangle_mesh(mesh, surface)

@@ -63,7 +63,7 @@ def main():
     add("occupied cells", lambda c, r: r["plan"]["occupied_cells"], "{:,}")
     add("nodes of the finest level", lambda c, r: r["fit"]["levels"][-1]["free_nodes"], "{:,}")
     add("nodes of all levels", lambda c, r: sum(v["free_nodes"] for v in r["fit"]["levels"]), "{:,}")
-    add("triangles", lambda c, r: r["triangles"], "{:,}")
+    add("triangles", lambda c, r: r["mesh"]["triangles"], "{:,}")
     for stage in runs[0][1]["seconds"]:
         if stage != "total":
             add(f"{stage}, wall seconds", lambda c, r, s=stage: r["seconds"][s], "{:.3f}")
