@@ -141,9 +141,9 @@ pub struct ReconstructArgs {
     /// Drop surface farther than this from the points, or `off` [default: 50 times the spacing; off for objects].
     #[arg(long, value_name = "LENGTH|off", value_parser = values::trim)]
     pub trim: Option<TrimChoice>,
-    /// Weight of the points against smoothness, without unit; lower it for noise beyond a third of a cell.
-    #[arg(long, value_name = "ALPHA", value_parser = values::positive, default_value_t = zeroset::fit::FitParams::SCREENING)]
-    pub screening: f64,
+    /// Weight of the points against smoothness, without unit [default: 1 to 16, by the noise of the points over the cell].
+    #[arg(long, value_name = "ALPHA", value_parser = values::positive)]
+    pub screening: Option<f64>,
     /// Values of the nearest point that each vertex gets: off, rgb, intensity or class [default: rgb].
     #[arg(long, value_name = "WHICH", hide_possible_values = true)]
     pub attributes: Option<AttributesChoice>,

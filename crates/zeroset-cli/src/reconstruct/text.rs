@@ -83,6 +83,7 @@ pub(super) fn plan(plan: &PlanReport, input: &Input, memory: u64) -> String {
         ("box to", position(high, decimals)),
         ("box sides", position(sides, decimals)),
         ("spacing", length(plan.spacing, unit)),
+        ("noise", length(plan.noise, unit)),
         ("scene", format!("{} ({})", name(plan.scene), plan.scene_reason)),
         ("up", name(plan.up)),
         ("resolution", format!("{}{cap}", length(plan.resolution, unit))),

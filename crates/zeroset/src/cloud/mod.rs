@@ -1,11 +1,13 @@
 //! Point clouds: positions with what was measured beside them.
 
 mod filter;
+mod noise;
 mod offset;
 mod outliers;
 mod spacing;
 
 pub use filter::{Filter, FilterReport, NOISE_CLASSES, retain};
+pub use noise::noise;
 pub use offset::choose_offset;
 pub use outliers::isolated_points;
 pub use spacing::Spacing;

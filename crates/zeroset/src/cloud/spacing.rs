@@ -78,7 +78,7 @@ impl Spacing {
     /// The same, with a tree over `cloud.points` that is already there.
     #[must_use]
     pub fn with_tree(cloud: &Cloud, tree: &PointTree) -> Option<Self> {
-        let chosen = choose(tree);
+        let chosen = spread(tree, EXAMINED);
         let queries: Vec<Vec3> = chosen.into_iter().map(|i| cloud.points[i]).collect();
         let (mut low, mut high) = (*queries.first()?, *queries.first()?);
         for point in cloud.points.iter().filter(|p| vec3::is_finite(**p)) {
@@ -119,10 +119,10 @@ impl Spacing {
     }
 }
 
-/// Which points to examine: one at random from each of equal runs of the points in spatial order, so that they are
-/// spread well.
-fn choose(tree: &PointTree) -> Vec<usize> {
-    let count = tree.len().min(EXAMINED);
+/// At most `most` of the points: one at random from each of equal runs of them in spatial order, so that they are spread
+/// well.
+pub(super) fn spread(tree: &PointTree, most: usize) -> Vec<usize> {
+    let count = tree.len().min(most);
     let mut chance = Chance::new(0, 8, 0);
     let step = tree.len() as f64 / count as f64;
     let mut places: Vec<usize> = (0..count).map(|i| ((i as f64 + chance.uniform()) * step) as usize).collect();

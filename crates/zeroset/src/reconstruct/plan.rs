@@ -1,12 +1,15 @@
 //! Every default resolved against the cloud.
 
+use rayon::prelude::*;
 use serde::Serialize;
 
+use super::frame::Frame;
 use super::scene::SceneEvidence;
 use super::{ReconstructError, Up};
-use crate::cloud::{Cloud, Spacing};
+use crate::cloud::{Cloud, Spacing, noise};
 use crate::fit::{FitError, FitParams, Prepared, Scene};
 use crate::monitor::{Monitor, check};
+use crate::spatial::PointTree;
 
 /// How fine the lattice is.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -57,8 +60,8 @@ pub struct ReconstructParams {
     pub up: Up,
     /// How fine.
     pub resolution: Resolution,
-    /// Weight of the data term; see [`FitParams`].
-    pub screening: f64,
+    /// Weight of the data term, see [`FitParams`]; `None` takes it from the noise of the points.
+    pub screening: Option<f64>,
     /// What is dropped far from the data.
     pub trim: Trim,
     /// Values for the vertices.
@@ -73,7 +76,7 @@ impl Default for ReconstructParams {
             scene: None,
             up: Up::default(),
             resolution: Resolution::default(),
-            screening: FitParams::SCREENING,
+            screening: None,
             trim: Trim::default(),
             attributes: AttributeChoice::default(),
             memory: 16 << 30,
@@ -87,6 +90,10 @@ impl Default for ReconstructParams {
 const RESOLUTION_REL: f64 = 1.5;
 /// The automatic trim of open scenes over the spacing of the points: bridges canals and the shadows of buildings.
 const TRIM_REL: f64 = 50.0;
+/// Noise, over the cell, that [`FitParams::SCREENING`] suits.
+const NOISE_REL: f64 = 0.25;
+/// The least and the most automatic weight of the data term.
+const SCREENING: [f64; 2] = [1.0, 16.0];
 /// Fewer points never make a surface.
 const LEAST_POINTS: usize = 8;
 /// Peak bytes of a whole run for each occupied cell of the finest level, and for each point; measured on airborne clouds.
@@ -104,6 +111,8 @@ pub struct PlanReport {
     pub bounds: [[f64; 3]; 2],
     /// Measured spacing of the points.
     pub spacing: f64,
+    /// Measured noise: standard deviation of the points across their surface.
+    pub noise: f64,
     /// The scene.
     pub scene: Scene,
     /// Why this scene.
@@ -156,7 +165,10 @@ pub fn plan<'a>(
         return Err(ReconstructError::TooFewPoints { found: cloud.len(), needed: LEAST_POINTS });
     }
     let upright: Vec<[f64; 3]> = cloud.points.iter().map(|&p| params.up.upright(p)).collect();
-    let spacing = Spacing::of(cloud).ok_or(ReconstructError::Degenerate { shape: "in one place" })?.median;
+    let tree = PointTree::new(&cloud.points);
+    let spacing = Spacing::with_tree(cloud, &tree).ok_or(ReconstructError::Degenerate { shape: "in one place" })?.median;
+    let noise = noise(cloud, &tree).unwrap_or(0.0);
+    drop(tree);
     let (low, high) = bounds(&cloud.points);
     let extent = (0..3).map(|a| high[a] - low[a]).fold(0.0, f64::max);
     if params.resolution == Resolution::Auto && extent > ASTRAY * spacing {
@@ -179,7 +191,10 @@ pub fn plan<'a>(
     let (scene, scene_reason) = params
         .scene
         .map_or_else(|| SceneEvidence::of(&upright, spacing).verdict(), |scene| (scene, "asked for".to_owned()));
-    let fit = |resolution| FitParams { screening: params.screening, ..FitParams::new(scene, resolution) };
+    let frame = Frame::new(params.up, scene);
+    let points: Vec<[f64; 3]> = upright.into_par_iter().map(|p| frame.enter(params.up.restore(p))).collect();
+    let screening = |resolution| params.screening.unwrap_or_else(|| screening_for(noise, resolution));
+    let fit = |resolution| FitParams { screening: screening(resolution), ..FitParams::new(scene, resolution) };
     let wanted = match params.resolution {
         Resolution::Auto => RESOLUTION_REL * spacing,
         Resolution::Length(length) if length.is_finite() && length > 0.0 => length,
@@ -202,7 +217,7 @@ pub fn plan<'a>(
         let needed = if least > params.memory as f64 {
             least
         } else {
-            let prepared = Prepared::new(&upright, &fit(resolution)).map_err(FitError::from)?;
+            let prepared = Prepared::new(&points, &fit(resolution)).map_err(FitError::from)?;
             check(monitor)?;
             let cells = prepared.occupied_cells().max(surface_cells(cloud.len(), spacing, resolution));
             let needed = expected_bytes(cells, cloud.len());
@@ -229,6 +244,7 @@ pub fn plan<'a>(
         points: cloud.len(),
         bounds: [low, high].map(|corner| std::array::from_fn(|a| corner[a] + offset[a])),
         spacing,
+        noise,
         scene,
         scene_reason,
         up: params.up,
@@ -239,7 +255,7 @@ pub fn plan<'a>(
         expected_nodes: 14 * cells as u64,
         expected_bytes: expected_bytes(cells, cloud.len()) as u64,
         trim,
-        screening: params.screening,
+        screening: screening(resolution),
         attributes: params.attributes,
     };
     Ok(Plan { report, cloud, prepared, seconds: start.elapsed().as_secs_f64() })
@@ -252,6 +268,12 @@ fn surface_cells(points: usize, spacing: f64, resolution: f64) -> usize {
 
 fn expected_bytes(cells: usize, points: usize) -> f64 {
     BYTES_A_CELL * cells as f64 + BYTES_A_POINT * points as f64
+}
+
+/// The weight of the data term for points whose noise is this, on cells of this size.
+fn screening_for(noise: f64, resolution: f64) -> f64 {
+    let [least, most] = SCREENING;
+    (FitParams::SCREENING * (NOISE_REL * resolution / noise).powi(2)).clamp(least, most)
 }
 
 fn bounds(points: &[[f64; 3]]) -> ([f64; 3], [f64; 3]) {

@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::attributes::transfer;
+use super::frame::Frame;
 use super::{Plan, PlanReport, ReconstructError};
 use crate::cloud::Cloud;
 use crate::contour::{ColumnOutline, ContourReport, contour};
@@ -57,9 +58,10 @@ impl Plan<'_> {
         let (field, fit) = prepared.fit(monitor)?;
         seconds.fit = start.elapsed().as_secs_f64();
 
+        let frame = Frame::new(plan.up, plan.scene);
         monitor.stage("extracting the surface");
         let start = Instant::now();
-        let (mut mesh, contour) = match Keep::new(cloud, &plan) {
+        let (mut mesh, contour) = match Keep::new(cloud, &plan, frame) {
             None => contour(&field, |_| true),
             Some(keep) => contour(&field, |p| keep.contains(p)),
         };
@@ -68,7 +70,7 @@ impl Plan<'_> {
         if mesh.triangles.is_empty() {
             return Err(ReconstructError::NoSurface);
         }
-        mesh.vertices.par_iter_mut().for_each(|v| *v = plan.up.restore(*v));
+        mesh.vertices.par_iter_mut().for_each(|v| *v = frame.leave(*v));
         mesh.world_from_local = cloud.world_from_local;
         mesh.crs.clone_from(&cloud.crs);
         seconds.contour = start.elapsed().as_secs_f64();
@@ -85,7 +87,7 @@ impl Plan<'_> {
     }
 }
 
-/// Where surface is kept, in the upright frame.
+/// Where surface is kept, in the frame of the fit.
 enum Keep {
     /// Within the outline seen from above.
     Outline(ColumnOutline),
@@ -94,12 +96,12 @@ enum Keep {
 }
 
 impl Keep {
-    fn new(cloud: &Cloud, plan: &PlanReport) -> Option<Self> {
+    fn new(cloud: &Cloud, plan: &PlanReport, frame: Frame) -> Option<Self> {
         let radius = plan.trim?;
-        let upright: Vec<[f64; 3]> = cloud.points.par_iter().map(|&p| plan.up.upright(p)).collect();
+        let points: Vec<[f64; 3]> = cloud.points.par_iter().map(|&p| frame.enter(p)).collect();
         Some(match plan.scene {
-            Scene::Terrain | Scene::Airborne => Self::Outline(ColumnOutline::new(&upright, plan.resolution, radius)),
-            Scene::Object | Scene::Free => Self::Near { tree: PointTree::new(&upright), radius },
+            Scene::Terrain | Scene::Airborne => Self::Outline(ColumnOutline::new(&points, plan.resolution, radius)),
+            Scene::Object | Scene::Free => Self::Near { tree: PointTree::new(&points), radius },
         })
     }
 
