@@ -167,7 +167,7 @@ fn laplacian<T: Real>(halo: &Halo<T>, at: usize) -> [T; 8] {
 
 /// The diagonal of A on a row: for Jacobi's preconditioner.
 #[inline(always)]
-pub(super) fn diagonal(level: &Level, b: usize, row: usize, stencil: Option<&StencilRow>) -> [f32; 8] {
+fn diagonal(level: &Level, b: usize, row: usize, stencil: Option<&StencilRow>) -> [f32; 8] {
     let mut diagonal = [6.0; 8];
     if let Some(coefficients) = stencil {
         for k in 0..8 {
@@ -184,9 +184,9 @@ pub(super) fn diagonal(level: &Level, b: usize, row: usize, stencil: Option<&Ste
     diagonal
 }
 
-/// Calls `row(row, inverse diagonal)` for each row of block `b` that has free nodes.
+/// Calls `visit(row, diagonal of A)` for each row of block `b` that has free nodes.
 #[inline(always)]
-pub(super) fn for_each_free_row(level: &Level, b: usize, mut visit: impl FnMut(usize, u8, [f32; 8])) {
+pub(super) fn for_each_diagonal(level: &Level, b: usize, mut visit: impl FnMut(usize, [f32; 8])) {
     let free = &level.free[b];
     if *free == [0; 8] {
         return;
@@ -194,9 +194,8 @@ pub(super) fn for_each_free_row(level: &Level, b: usize, mut visit: impl FnMut(u
     let mut stencil = StencilCursor::new(level, b);
     for row in 0..64 {
         let coefficients = stencil.next(row);
-        let bits = mask_row(free, row & 7, row >> 3);
-        if bits != 0 {
-            visit(row, bits, diagonal(level, b, row, coefficients).map(|d| 1.0 / d));
+        if mask_row(free, row & 7, row >> 3) != 0 {
+            visit(row, diagonal(level, b, row, coefficients));
         }
     }
 }

@@ -1,9 +1,12 @@
 //! Conjugate gradients on the free nodes, with Jacobi's preconditioner and a warm start.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use super::level::Level;
-use super::operator::{Real, apply, for_each_free_row};
+use super::operator::{Real, apply, for_each_diagonal};
+use crate::domain::{Mask, mask_row};
 
 /// When to stop.
 #[derive(Debug, Clone, Copy)]
@@ -14,7 +17,7 @@ pub(super) struct SolveParams {
     pub(super) max_steps: usize,
 }
 
-/// Solves A f = rhs at the free nodes, starting from `f` and given its residual in `r`. `p` and `q` are scratch.
+/// Solves A f = rhs at the free nodes, starting from `f` and given its residual in `r`, which is zero elsewhere.
 ///
 /// `scale` is the norm that the residual is compared with. Each step lowers f'Af/2 - f'rhs, so stopping early is safe.
 /// Returns the number of steps.
@@ -22,14 +25,14 @@ pub(super) fn conjugate_gradients<T: Real>(
     level: &Level,
     f: &mut [T],
     r: &mut [T],
-    p: &mut [T],
-    q: &mut [T],
+    scratch: [&mut [T]; 3],
     scale: f64,
     params: SolveParams,
 ) -> usize {
+    let [p, q, inverse] = scratch;
     p.par_chunks_exact_mut(512).with_min_len(32).for_each(|p| p.fill(T::default()));
-    let (mut rz, mut rr) = precondition_and_dot(level, r);
-    direction(level, r, p, 0.0);
+    let (mut rz, mut rr) = precondition_and_dot(level, r, inverse);
+    direction(level, r, inverse, p, 0.0);
     let mut steps = 0;
     while steps < params.max_steps && rr.sqrt() > params.tolerance * scale && rz > 0.0 {
         let pq = apply(level, p, q);
@@ -37,8 +40,8 @@ pub(super) fn conjugate_gradients<T: Real>(
             break;
         }
         let old = rz;
-        (rz, rr) = advance(level, f, r, p, q, rz / pq);
-        direction(level, r, p, rz / old);
+        (rz, rr) = advance(level, f, r, [&*p, &*q, &*inverse], rz / pq);
+        direction(level, r, inverse, p, rz / old);
         steps += 1;
     }
     steps
@@ -48,15 +51,23 @@ fn sum_pairs(partial: Vec<(f64, f64)>) -> (f64, f64) {
     partial.into_iter().fold((0.0, 0.0), |s, p| (s.0 + p.0, s.1 + p.1))
 }
 
-/// (r'z, r'r) with z = r / diagonal.
-fn precondition_and_dot<T: Real>(level: &Level, r: &[T]) -> (f64, f64) {
+/// Fills in 1 / diagonal where there are free nodes; (r'z, r'r) with z = r / diagonal.
+fn precondition_and_dot<T: Real>(level: &Level, r: &[T], inverse: &mut [T]) -> (f64, f64) {
     let partial = r
         .par_chunks_exact(512)
+        .zip(inverse.par_chunks_exact_mut(512))
         .enumerate()
         .with_min_len(16)
-        .map(|(b, r)| {
+        .map(|(b, (r, inverse))| {
             let mut dots = Dots::default();
-            for_each_free_row(level, b, |row, _, inverse| dots.add(&r[row * 8..row * 8 + 8], &inverse));
+            for_each_diagonal(level, b, |row, diagonal| {
+                let range = row * 8..row * 8 + 8;
+                let inverse = &mut inverse[range.clone()];
+                for k in 0..8 {
+                    inverse[k] = T::from(1.0 / diagonal[k]);
+                }
+                dots.add(&r[range], inverse);
+            });
             dots.sums()
         })
         .collect();
@@ -72,11 +83,11 @@ struct Dots<T: Real> {
 
 impl<T: Real> Dots<T> {
     #[inline(always)]
-    fn add(&mut self, r: &[T], inverse: &[f32; 8]) {
+    fn add(&mut self, r: &[T], inverse: &[T]) {
         for k in 0..8 {
             let square = r[k] * r[k];
             self.rr[k] += square;
-            self.rz[k] += square * T::from(inverse[k]);
+            self.rz[k] += square * inverse[k];
         }
     }
 
@@ -86,26 +97,26 @@ impl<T: Real> Dots<T> {
 }
 
 /// f += step p, r -= step q; returns the new (r'z, r'r).
-fn advance<T: Real>(level: &Level, f: &mut [T], r: &mut [T], p: &[T], q: &[T], step: f64) -> (f64, f64) {
+fn advance<T: Real>(level: &Level, f: &mut [T], r: &mut [T], [p, q, inverse]: [&[T]; 3], step: f64) -> (f64, f64) {
     let step = T::of(step);
     let partial = f
         .par_chunks_exact_mut(512)
         .zip(r.par_chunks_exact_mut(512))
-        .zip(p.par_chunks_exact(512).zip(q.par_chunks_exact(512)))
         .enumerate()
         .with_min_len(16)
-        .map(|(b, ((f, r), (p, q)))| {
+        .map(|(b, (f, r))| {
+            let block = b * 512..(b + 1) * 512;
+            let (p, q, inverse) = (&p[block.clone()], &q[block.clone()], &inverse[block]);
             let mut dots = Dots::default();
-            for_each_free_row(level, b, |row, _, inverse| {
-                let range = row * 8..row * 8 + 8;
-                let (f, r) = (&mut f[range.clone()], &mut r[range.clone()]);
-                let (p, q) = (&p[range.clone()], &q[range]);
+            for row in free_rows(&level.free[b]) {
+                let (f, r) = (&mut f[row.clone()], &mut r[row.clone()]);
+                let (p, q) = (&p[row.clone()], &q[row.clone()]);
                 for k in 0..8 {
                     f[k] += step * p[k];
                     r[k] = r[k] - step * q[k];
                 }
-                dots.add(r, &inverse);
-            });
+                dots.add(r, &inverse[row]);
+            }
             dots.sums()
         })
         .collect();
@@ -113,15 +124,24 @@ fn advance<T: Real>(level: &Level, f: &mut [T], r: &mut [T], p: &[T], q: &[T], s
 }
 
 /// p = r / diagonal + beta p.
-fn direction<T: Real>(level: &Level, r: &[T], p: &mut [T], beta: f64) {
+fn direction<T: Real>(level: &Level, r: &[T], inverse: &[T], p: &mut [T], beta: f64) {
     let beta = T::of(beta);
-    p.par_chunks_exact_mut(512).zip(r.par_chunks_exact(512)).enumerate().with_min_len(16).for_each(|(b, (p, r))| {
-        for_each_free_row(level, b, |row, _, inverse| {
-            let range = row * 8..row * 8 + 8;
-            let (p, r) = (&mut p[range.clone()], &r[range]);
-            for k in 0..8 {
-                p[k] = r[k] * T::from(inverse[k]) + beta * p[k];
+    p.par_chunks_exact_mut(512)
+        .zip(r.par_chunks_exact(512).zip(inverse.par_chunks_exact(512)))
+        .enumerate()
+        .with_min_len(16)
+        .for_each(|(b, (p, (r, inverse)))| {
+            for row in free_rows(&level.free[b]) {
+                let (p, r, inverse) = (&mut p[row.clone()], &r[row.clone()], &inverse[row]);
+                for k in 0..8 {
+                    p[k] = r[k] * inverse[k] + beta * p[k];
+                }
             }
         });
-    });
+}
+
+/// The places in a block of the rows that have free nodes.
+#[inline(always)]
+fn free_rows(free: &Mask) -> impl Iterator<Item = Range<usize>> {
+    (0..64).filter(|row| mask_row(free, row & 7, row >> 3) != 0).map(|row| row * 8..row * 8 + 8)
 }
