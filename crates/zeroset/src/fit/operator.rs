@@ -69,6 +69,18 @@ pub(super) fn row_at<T: Copy>(halo: &Halo<T>, at: usize) -> &[T; 8] {
     halo[at..at + 8].try_into().expect("eight values")
 }
 
+/// The rows of eight values of a block.
+#[inline(always)]
+pub(super) fn rows<T>(block: &[T]) -> &[[T; 8]; 64] {
+    block.as_chunks().0.try_into().expect("64 rows")
+}
+
+/// The rows of eight values of a block.
+#[inline(always)]
+pub(super) fn rows_mut<T>(block: &mut [T]) -> &mut [[T; 8]; 64] {
+    block.as_chunks_mut().0.try_into().expect("64 rows")
+}
+
 #[inline(always)]
 fn stencil_product<T: Real>(halo: &Halo<T>, at: usize, row: &StencilRow) -> [T; 8] {
     let mut sum = [T::default(); 8];

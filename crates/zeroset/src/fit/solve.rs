@@ -1,11 +1,9 @@
 //! Conjugate gradients on the free nodes, with Jacobi's preconditioner and a warm start.
 
-use std::ops::Range;
-
 use rayon::prelude::*;
 
 use super::level::Level;
-use super::operator::{Real, apply, for_each_diagonal};
+use super::operator::{Real, apply, for_each_diagonal, rows, rows_mut};
 use crate::domain::{Mask, mask_row};
 
 /// When to stop.
@@ -59,14 +57,11 @@ fn precondition_and_dot<T: Real>(level: &Level, r: &[T], inverse: &mut [T]) -> (
         .enumerate()
         .with_min_len(16)
         .map(|(b, (r, inverse))| {
+            let (r, inverse) = (rows(r), rows_mut(inverse));
             let mut dots = Dots::default();
             for_each_diagonal(level, b, |row, diagonal| {
-                let range = row * 8..row * 8 + 8;
-                let inverse = &mut inverse[range.clone()];
-                for k in 0..8 {
-                    inverse[k] = T::from(1.0 / diagonal[k]);
-                }
-                dots.add(&r[range], inverse);
+                inverse[row] = diagonal.map(|d| T::from(1.0 / d));
+                dots.add(r[row], inverse[row]);
             });
             dots.sums()
         })
@@ -83,12 +78,10 @@ struct Dots<T: Real> {
 
 impl<T: Real> Dots<T> {
     #[inline(always)]
-    fn add(&mut self, r: &[T], inverse: &[T]) {
-        for k in 0..8 {
-            let square = r[k] * r[k];
-            self.rr[k] += square;
-            self.rz[k] += square * inverse[k];
-        }
+    fn add(&mut self, r: [T; 8], inverse: [T; 8]) {
+        let square = product(r, r);
+        self.rr = sum(self.rr, square);
+        self.rz = sum(self.rz, product(square, inverse));
     }
 
     fn sums(self) -> (f64, f64) {
@@ -98,7 +91,7 @@ impl<T: Real> Dots<T> {
 
 /// f += step p, r -= step q; returns the new (r'z, r'r).
 fn advance<T: Real>(level: &Level, f: &mut [T], r: &mut [T], [p, q, inverse]: [&[T]; 3], step: f64) -> (f64, f64) {
-    let step = T::of(step);
+    let (step, minus_step) = (T::of(step), T::of(-step));
     let partial = f
         .par_chunks_exact_mut(512)
         .zip(r.par_chunks_exact_mut(512))
@@ -106,16 +99,13 @@ fn advance<T: Real>(level: &Level, f: &mut [T], r: &mut [T], [p, q, inverse]: [&
         .with_min_len(16)
         .map(|(b, (f, r))| {
             let block = b * 512..(b + 1) * 512;
-            let (p, q, inverse) = (&p[block.clone()], &q[block.clone()], &inverse[block]);
+            let (f, r) = (rows_mut(f), rows_mut(r));
+            let (p, q, inverse) = (rows(&p[block.clone()]), rows(&q[block.clone()]), rows(&inverse[block]));
             let mut dots = Dots::default();
             for row in free_rows(&level.free[b]) {
-                let (f, r) = (&mut f[row.clone()], &mut r[row.clone()]);
-                let (p, q) = (&p[row.clone()], &q[row.clone()]);
-                for k in 0..8 {
-                    f[k] += step * p[k];
-                    r[k] = r[k] - step * q[k];
-                }
-                dots.add(r, &inverse[row]);
+                f[row] = plus_multiple(f[row], step, p[row]);
+                r[row] = plus_multiple(r[row], minus_step, q[row]);
+                dots.add(r[row], inverse[row]);
             }
             dots.sums()
         })
@@ -131,17 +121,35 @@ fn direction<T: Real>(level: &Level, r: &[T], inverse: &[T], p: &mut [T], beta: 
         .enumerate()
         .with_min_len(16)
         .for_each(|(b, (p, (r, inverse)))| {
+            let (p, r, inverse) = (rows_mut(p), rows(r), rows(inverse));
             for row in free_rows(&level.free[b]) {
-                let (p, r, inverse) = (&mut p[row.clone()], &r[row.clone()], &inverse[row]);
-                for k in 0..8 {
-                    p[k] = r[k] * inverse[k] + beta * p[k];
-                }
+                p[row] = plus_multiple(product(r[row], inverse[row]), beta, p[row]);
             }
         });
 }
 
-/// The places in a block of the rows that have free nodes.
+/// The rows of a block that have free nodes.
 #[inline(always)]
-fn free_rows(free: &Mask) -> impl Iterator<Item = Range<usize>> {
-    (0..64).filter(|row| mask_row(free, row & 7, row >> 3) != 0).map(|row| row * 8..row * 8 + 8)
+fn free_rows(free: &Mask) -> impl Iterator<Item = usize> {
+    (0..64).filter(|row| mask_row(free, row & 7, row >> 3) != 0)
+}
+
+// Rows go in and out by value: the compiler then sees that no result overlaps an operand, and uses vector instructions.
+
+/// a + factor b.
+#[inline(always)]
+fn plus_multiple<T: Real>(a: [T; 8], factor: T, b: [T; 8]) -> [T; 8] {
+    std::array::from_fn(|k| a[k] + factor * b[k])
+}
+
+/// a + b.
+#[inline(always)]
+fn sum<T: Real>(a: [T; 8], b: [T; 8]) -> [T; 8] {
+    std::array::from_fn(|k| a[k] + b[k])
+}
+
+/// a b, lane by lane.
+#[inline(always)]
+fn product<T: Real>(a: [T; 8], b: [T; 8]) -> [T; 8] {
+    std::array::from_fn(|k| a[k] * b[k])
 }
