@@ -130,6 +130,8 @@ struct Source {
     points: u64,
     non_finite: u64,
     withheld: u64,
+    /// What the file holds beside positions.
+    attributes: Vec<&'static str>,
 }
 
 #[derive(Debug, Serialize)]
@@ -189,6 +191,7 @@ impl<'a> Report<'a> {
             points: source.points,
             non_finite: source.non_finite,
             withheld: source.withheld,
+            attributes: source.attributes.clone(),
         };
         Self {
             schema_version: SCHEMA_VERSION,

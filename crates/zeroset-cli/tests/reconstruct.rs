@@ -137,7 +137,7 @@ fn the_report_has_its_fields() {
     );
     assert_eq!(report["schema_version"], 1);
     assert_eq!(report["zeroset_version"], env!("CARGO_PKG_VERSION"));
-    assert_eq!(names(&report["inputs"][0]), ["format", "non_finite", "path", "points", "withheld"]);
+    assert_eq!(names(&report["inputs"][0]), ["attributes", "format", "non_finite", "path", "points", "withheld"]);
     assert_eq!(report["inputs"][0]["path"], "in.xyz");
     assert_eq!((&report["inputs"][1]["points"], &report["inputs"][1]["non_finite"]), (&2.into(), &1.into()));
     assert_eq!(report["points"]["used"], 3002);
@@ -218,6 +218,49 @@ fn classes_are_chosen() {
     let outcome = line(folder.path(), "reconstruct in.las -o out.ply -v --scene object").ok();
     assert!(outcome.stderr.contains("left out 400 by class"), "{}", outcome.stderr);
     assert!(outcome.stderr.contains("3,600 of 4,000 points"), "{}", outcome.stderr);
+}
+
+#[test]
+fn inputs_without_classes_count_as_never_classified() {
+    let folder = folder();
+    classified(folder.path());
+    write(&folder.path().join("bare.xyz"), &torus(1000, [0.0; 3]).points);
+    for (words, used, whole) in [
+        ("", 4600, false),
+        ("--exclude none", 5000, false),
+        ("--exclude 2,7", 1000, false),
+        ("--exclude 0,7", 3600, true),
+        ("--classes 2", 3600, true),
+        ("--classes 0,2", 4600, false),
+    ] {
+        for inputs in ["in.las bare.xyz", "bare.xyz in.las"] {
+            let outcome = line(folder.path(), &format!("reconstruct {inputs} --dry-run --report - {words}")).ok();
+            let report: Value = serde_json::from_str(&outcome.stdout).unwrap();
+            assert_eq!(report["points"]["used"], used, "{inputs} {words}");
+            let said =
+                outcome.stderr.contains("bare.xyz has no classes, so") && outcome.stderr.contains("all its 1,000");
+            assert_eq!(said, whole, "{inputs} {words}: {}", outcome.stderr);
+            let note = report["notes"].as_array().unwrap().iter().any(|n| n.as_str().unwrap().contains("class 0"));
+            assert!(note, "{}", report["notes"]);
+        }
+    }
+}
+
+#[test]
+fn vertices_near_points_with_values_get_them() {
+    let folder = folder();
+    // Two tori, two units apart, of which one has colours.
+    let (left, right) = (torus(3000, [0.0; 3]), torus(3000, [2.0, 0.0, 0.0]));
+    let attributes = Attributes { colors: Some(vec![[10, 20, 30]; 3000]), ..Attributes::default() };
+    write_cloud(&folder.path().join("a.ply"), &Cloud { attributes, ..left }, &WriteOptions::default()).unwrap();
+    write(&folder.path().join("b.xyz"), &right.points);
+    let outcome = line(folder.path(), "reconstruct b.xyz a.ply -o out.ply --scene object").ok();
+    assert!(outcome.stderr.contains("note: b.xyz has no colors; its points get white"), "{}", outcome.stderr);
+    let mesh = read_mesh(&folder.path().join("out.ply")).unwrap();
+    for (vertex, color) in mesh.vertices.iter().zip(mesh.attributes.colors.as_ref().unwrap()) {
+        let expected = if vertex[0] < 1.0 { [10, 20, 30] } else { [255; 3] };
+        assert_eq!(*color, expected, "{vertex:?}");
+    }
 }
 
 #[test]

@@ -5,8 +5,10 @@ mod common;
 use std::path::Path;
 
 use common::{GEOREFERENCED, SWISS, assert_near, attributes, cloud, folder, world};
+use zeroset::cloud::Attributes;
 use zeroset_io::{
-    CloudFile, CloudFormat, IoError, LinearUnit, WriteOptions, read_cloud, read_cloud_bytes, read_clouds, write_cloud,
+    CloudFile, CloudFormat, IoError, LinearUnit, NO_CLASS, NO_COLOR, NO_INTENSITY, WriteOptions, read_cloud,
+    read_cloud_bytes, read_clouds, write_cloud,
 };
 
 fn read(name: &str, content: impl AsRef<[u8]>) -> Result<CloudFile, IoError> {
@@ -380,6 +382,32 @@ fn e57_joins_scans_and_understands_spherical_points() {
 }
 
 #[test]
+fn e57_keeps_the_colours_of_the_scans_that_have_them() {
+    use e57::{Record, RecordValue};
+    let mut file = std::io::Cursor::new(Vec::new());
+    let mut writer = e57::E57Writer::new(&mut file, "a file").unwrap();
+    let bare = vec![Record::CARTESIAN_X_F32, Record::CARTESIAN_Y_F32, Record::CARTESIAN_Z_F32];
+    let mut colored = bare.clone();
+    colored.extend([Record::COLOR_RED_U8, Record::COLOR_GREEN_U8, Record::COLOR_BLUE_U8]);
+    let place = [1.0, 2.0, 3.0].map(RecordValue::Single);
+    for (name, fields) in [("first", bare), ("second", colored)] {
+        let with_color = fields.len() > 3;
+        let mut scan = writer.add_pointcloud(name, fields).unwrap();
+        let mut values: Vec<_> = place.clone().into();
+        if with_color {
+            values.extend([10, 20, 30].map(RecordValue::Integer));
+        }
+        scan.add_point(values).unwrap();
+        scan.finalize().unwrap();
+    }
+    writer.finalize().unwrap();
+    drop(writer);
+    let back = read("a.e57", file.into_inner()).unwrap();
+    assert_eq!(back.cloud.attributes.colors, Some(vec![NO_COLOR, [10, 20, 30]]));
+    assert_eq!(back.report.notes, ["not every scan has colours; points of the others are white"]);
+}
+
+#[test]
 fn points_without_finite_coordinates_are_dropped_with_their_attributes() {
     let file = read("a.xyz", "x y z class\n1 2 3 1\nnan 2 3 2\n4 inf 6 3\n7 8 9 4\n").unwrap();
     assert_eq!(file.cloud.points, [[1.0, 2.0, 3.0], [7.0, 8.0, 9.0]]);
@@ -400,8 +428,7 @@ fn several_files_become_one_cloud() {
     expected.push([84_000.5, 447_000.25, 1.0]);
     expected.extend(GEOREFERENCED);
     assert_near(&world(all.cloud.world_from_local, &all.cloud.points), &expected, 0.000_501);
-    assert_eq!(all.cloud.attributes, Default::default());
-    assert_eq!(all.report.attributes_left_out, ["colors", "intensities", "classes"]);
+    assert_eq!(all.cloud.attributes.classes, Some(vec![2, 6, 9, 1, 0, 2, 6, 9, 1]));
     assert_eq!((all.report.sources.len(), all.report.points_read, all.report.points_declared), (3, 9, None));
     let counts: Vec<u64> = all.report.sources.iter().map(|source| source.points).collect();
     assert_eq!(counts.iter().sum::<u64>(), all.report.points_read, "{counts:?}");
@@ -409,23 +436,45 @@ fn several_files_become_one_cloud() {
     assert_eq!(all.cloud.crs.as_deref(), Some("EPSG:28992"));
 
     let both = read_clouds(&[first, third]).unwrap();
-    assert!(both.report.attributes_left_out.is_empty() && both.report.notes.is_empty(), "{:?}", both.report);
+    assert!(both.report.notes.is_empty(), "{:?}", both.report);
     assert_eq!(both.cloud.attributes.classes, Some(vec![2, 6, 9, 1, 2, 6, 9, 1]));
     assert_eq!(both.report.points_declared, Some(8));
     assert!(matches!(read_clouds(&[]), Err(IoError::NoInput)));
 }
 
 #[test]
-fn attributes_are_kept_only_if_the_later_file_has_them_too() {
+fn points_of_files_without_an_attribute_get_none() {
     let folder = folder();
     let (bare, full) = (folder.path().join("a.xyz"), folder.path().join("b.ply"));
     std::fs::write(&bare, "1 2 3\n").unwrap();
-    write_cloud(&full, &cloud(GEOREFERENCED), &WriteOptions::default()).unwrap();
+    let given = cloud(GEOREFERENCED);
+    write_cloud(&full, &given, &WriteOptions::default()).unwrap();
     for order in [[&bare, &full, &full], [&full, &bare, &full], [&full, &full, &bare]] {
         let all = read_clouds(&order.map(Clone::clone)).unwrap();
-        assert_eq!(all.cloud.attributes, Default::default());
-        assert_eq!(all.report.attributes_left_out.len(), 3);
+        let (mut colors, mut intensities, mut classes) = (Vec::new(), Vec::new(), Vec::new());
+        for path in order {
+            if *path == bare {
+                colors.push(NO_COLOR);
+                intensities.push(NO_INTENSITY);
+                classes.push(NO_CLASS);
+            } else {
+                colors.extend(given.attributes.colors.iter().flatten());
+                intensities.extend(given.attributes.intensities.iter().flatten());
+                classes.extend(given.attributes.classes.iter().flatten());
+            }
+        }
+        let expected = Attributes { colors: Some(colors), intensities: Some(intensities), classes: Some(classes) };
+        assert_eq!(all.cloud.attributes, expected);
+        let notes: Vec<&String> = all.report.notes.iter().filter(|note| note.contains("has no")).collect();
+        assert_eq!(notes.len(), 1, "{notes:?}");
+        assert!(notes[0].contains("a.xyz has no colors, no intensities, no classes"), "{notes:?}");
+        for (source, path) in all.report.sources.iter().zip(order) {
+            assert_eq!(source.has("classes"), *path == full);
+        }
     }
+    let bare_only = read_clouds(&[bare.clone(), bare]).unwrap();
+    assert_eq!(bare_only.cloud.attributes, Attributes::default());
+    assert!(bare_only.report.notes.is_empty(), "{:?}", bare_only.report.notes);
 }
 
 #[test]

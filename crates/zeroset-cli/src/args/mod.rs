@@ -26,6 +26,8 @@ Examples:
   zeroset reconstruct tile.laz --dry-run
 
 Lengths are in the unit of the input, mostly metres.
+Where only some inputs have classes, points of the others count as class 0, never classified: --exclude keeps them and
+--classes drops them unless the list names 0. Where only some have colours or intensities, the others count as white or 0.
 Read are las, laz (COPC too), ply, xyz, txt, csv, asc, pts, pcd and e57; written are ply, obj, stl, off and glb.
 Coordinates stay in the input's reference system; stl and glb hold them less an offset, which is printed.";
 
