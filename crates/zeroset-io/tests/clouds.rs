@@ -293,6 +293,32 @@ fn text_columns_by_name() {
 }
 
 #[test]
+fn text_columns_are_where_the_header_says() {
+    for text in [
+        // A name with a space; the index column of a table without a name; a number of something beside northing.
+        "GPS time,X,Y,Z,red\n7,1,2,3,9\n8,4.5,-5,6.25,9\n9,7,8,9,9\n",
+        ",x,y,z\n0,1,2,3\n1,4.5,-5,6.25\n2,7,8,9\n",
+        "n,x,y,z,height\n5,1,2,3,0\n6,4.5,-5,6.25,0\n7,7,8,9,0\n",
+        "\"height above ground\";\"x\";\"y\";\"z\"\n5;1;2;3\n6;4.5;-5;6.25\n7;7;8;9\n",
+        // Words, dates, nothing and quoted separators in columns before.
+        "name,date,x,y,z\nNew York,2020-01-01 12:00,1,2,3\n,,4.5,-5,6.25\n\"a, b\",x,7,8,9\n",
+        "tag\tfirst name\tx\ty\tz\n1\t\t1\t2\t3\n\tb c\t4.5\t-5\t6.25\n3\td\t7\t8\t9\n",
+        // Names between commas, values between spaces.
+        "# x,y,z\n1 2 3\n4.5 -5 6.25\n7 8 9\n",
+        "x (m),y (m),z (m)\r\n1,2,3\r\n4.5,-5,6.25\r\n7,8,9\r\n",
+        "+1 +2 +3\n+4.5 -5 +6.25\n7 8 9\n",
+    ] {
+        assert_eq!(points("a.csv", text), THREE, "{text}");
+    }
+    let file = read("a.csv", "x,y,z,time,intensity\n1,2,3,2020-01-01 12:00:00,17\n4,5,6,,18\n").unwrap();
+    assert_eq!(file.cloud.attributes.intensities, Some(vec![17.0, 18.0]));
+    let file = read("a.csv", "\tx\ty\tz\tred\tgreen\tblue\n0\t1\t2\t3\t1\t2\t3\n1\t4\t5\t6\t\t\t\n").unwrap();
+    assert_eq!(file.cloud.attributes.colors, Some(vec![[1, 2, 3], [0; 3]]));
+    let file = read("a.csv", "id,lon,lat,alt\n7,1,2,3\n").unwrap();
+    assert!(file.report.notes[0].starts_with("line 1 names no x, y and z"), "{:?}", file.report.notes);
+}
+
+#[test]
 fn unnamed_text_columns_are_mentioned_and_left_alone() {
     let file = read("a.xyz", "1 2 3 0.1 0.2 0.3\n4 5 6 0.1 0.2 0.3\n").unwrap();
     assert_eq!(file.cloud.attributes, Default::default());
