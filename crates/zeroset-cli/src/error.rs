@@ -68,6 +68,12 @@ pub(crate) enum CliError {
         /// The inputs, in words.
         inputs: String,
     },
+    /// `-` as the output for a mesh.
+    #[error("standard output: meshes are not written there; name a file with one of the suffixes {known}")]
+    MeshToStream {
+        /// The suffixes that are known.
+        known: String,
+    },
     /// The threads cannot be started.
     #[error("the threads cannot be started: {0}; give fewer --threads")]
     Threads(#[from] rayon::ThreadPoolBuildError),

@@ -9,7 +9,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Parser, Subcommand, ValueEnum};
 use zeroset::sample::SceneKind;
 
-pub use values::{Bounds, Classes, Outliers, TrimChoice};
+pub use values::{Bounds, Classes, MinComponent, Outliers, TrimChoice};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -143,6 +143,9 @@ pub struct ReconstructArgs {
     /// Drop surface farther than this from the points, or `off` [default: 50 times the spacing; off for objects].
     #[arg(long, value_name = "LENGTH|off", value_parser = values::trim)]
     pub trim: Option<TrimChoice>,
+    /// Drop pieces of fewer than N triangles, but never the largest [default: 100; off for objects].
+    #[arg(long, value_name = "N|off", value_parser = values::min_component)]
+    pub min_component: Option<MinComponent>,
     /// Weight of the points against smoothness, without unit; lower it for noise beyond a third of a cell.
     #[arg(long, value_name = "ALPHA", value_parser = values::positive, default_value_t = zeroset::fit::FitParams::SCREENING)]
     pub screening: f64,

@@ -1,16 +1,23 @@
 //! Which points are used.
 
 use zeroset::cloud::{Cloud, Filter, NOISE_CLASSES, isolated_points, retain};
+use zeroset::monitor::Monitor;
 use zeroset_io::{NO_CLASS, ReadReport, Source, shown};
 
 use crate::args::{AttributesChoice, Outliers, ReconstructArgs};
 use crate::cloud_box::bounds;
 use crate::error::{CliError, in_words};
+use crate::interrupt;
 use crate::report::{Dropped, Filters, Input};
 use crate::table::{count, position};
 
 /// Leaves out what the options leave out.
-pub(super) fn select(mut cloud: Cloud, read: ReadReport, args: &ReconstructArgs) -> Result<Input, CliError> {
+pub(super) fn select(
+    mut cloud: Cloud,
+    read: ReadReport,
+    args: &ReconstructArgs,
+    monitor: &dyn Monitor,
+) -> Result<Input, CliError> {
     let filters = filters(args);
     if filters.classes.is_some() && cloud.attributes.classes.is_none() {
         return Err(CliError::NoClasses { inputs: in_words(&args.inputs) });
@@ -32,7 +39,10 @@ pub(super) fn select(mut cloud: Cloud, read: ReadReport, args: &ReconstructArgs)
         isolated: 0,
     };
     if let Some(k) = filters.outliers {
-        let keep: Vec<bool> = isolated_points(&cloud, k).into_iter().map(|isolated| !isolated).collect();
+        monitor.stage("looking for isolated points");
+        let isolated =
+            interrupt::watched(|| isolated_points(&cloud, k, monitor))?.map_err(|_| CliError::Interrupted)?;
+        let keep: Vec<bool> = isolated.into_iter().map(|isolated| !isolated).collect();
         dropped.isolated = retain(&mut cloud, &keep) as u64;
     }
     if cloud.is_empty() {
