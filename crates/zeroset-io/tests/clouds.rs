@@ -347,6 +347,12 @@ fn pcd_of_all_three_encodings() {
 }
 
 #[test]
+fn pcd_intensity_is_not_the_index() {
+    let text = "FIELDS i x y z intensity\nSIZE 4 4 4 4 4\nTYPE U F F F F\nCOUNT 1 1 1 1 1\nPOINTS 1\nDATA ascii\n5 1 2 3 0.5\n";
+    assert_eq!(read("a.pcd", text).unwrap().cloud.attributes.intensities, Some(vec![0.5]));
+}
+
+#[test]
 fn pcd_without_a_count_of_points_takes_the_grid() {
     let text = "FIELDS _ x y z\nSIZE 1 4 4 4\nTYPE U F F F\nCOUNT 3 1 1 1\nWIDTH 2\nHEIGHT 1\nDATA ascii\n\
         0 0 0 1 2 3\n0 0 0 nan nan nan\n";
