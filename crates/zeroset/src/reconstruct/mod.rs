@@ -29,6 +29,17 @@ pub use scene::SceneEvidence;
 use crate::fit::FitError;
 use crate::monitor::Cancelled;
 
+/// The automatic resolution over the spacing of the points, before memory makes it coarser.
+const WANTED_RESOLUTION_REL: f64 = 1.5;
+
+impl PlanReport {
+    /// The resolution that the points bear: what the automatic one is where memory allows for it.
+    #[must_use]
+    pub fn wanted_resolution(&self) -> f64 {
+        WANTED_RESOLUTION_REL * self.spacing
+    }
+}
+
 /// A reconstruction that could not be made. Each message names the remedy.
 #[derive(Debug, thiserror::Error)]
 pub enum ReconstructError {
@@ -92,4 +103,22 @@ pub enum ReconstructError {
     /// The monitor asked to stop.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sample::{Scene, SceneKind};
+
+    #[test]
+    fn the_wanted_resolution_is_the_one_without_a_limit() {
+        let cloud = Scene::new(SceneKind::Torus, 1).points(20_000, 0.001, 1);
+        let planned =
+            |memory| plan(&cloud, &ReconstructParams { memory, ..ReconstructParams::default() }, &()).unwrap();
+        let (free, capped) = (planned(16 << 30).report, planned(10_000_000).report);
+        assert!(!free.capped_by_memory && capped.capped_by_memory);
+        assert_eq!(free.resolution, free.wanted_resolution());
+        assert_eq!(capped.wanted_resolution(), free.resolution);
+        assert!(capped.resolution > capped.wanted_resolution());
+    }
 }
