@@ -3,6 +3,7 @@
 //! | chore | does |
 //! |---|---|
 //! | `check` | formatting, lints and documentation, all with warnings as errors |
+//! | `man DIR` | the manual pages of the command, written into a folder |
 //!
 //! The exit code is 0 if all went well, 1 if a step failed, and 2 for wrong usage.
 
@@ -12,15 +13,16 @@ const USAGE: &str = "\
 Usage: cargo xtask CHORE
 
 Chores:
-  check  formatting, lints and documentation, all with warnings as errors";
+  check    formatting, lints and documentation, all with warnings as errors
+  man DIR  the manual pages of the command, written into a folder";
 
 /// One run of cargo.
-struct Step {
-    arguments: &'static [&'static str],
-    environment: &'static [(&'static str, &'static str)],
+struct Step<'a> {
+    arguments: &'a [&'a str],
+    environment: &'a [(&'a str, &'a str)],
 }
 
-const CHECK: [Step; 3] = [
+const CHECK: [Step<'static>; 3] = [
     Step { arguments: &["fmt", "--all", "--check"], environment: &[] },
     Step {
         arguments: &["clippy", "--locked", "--workspace", "--all-targets", "--", "-D", "warnings"],
@@ -37,6 +39,7 @@ fn main() -> ExitCode {
     let words: Vec<_> = arguments.iter().map(|word| word.to_str()).collect();
     let outcome = match words[..] {
         [Some("check")] => CHECK.iter().try_for_each(run),
+        [Some("man"), Some(folder)] => man(folder),
         [Some("help" | "-h" | "--help")] => {
             println!("{USAGE}");
             Ok(())
@@ -55,8 +58,16 @@ fn main() -> ExitCode {
     }
 }
 
+/// Writes the manual pages. They are made by an example of the command's own crate, so that no other chore has to build it.
+fn man(folder: &str) -> Result<(), String> {
+    let folder = std::path::absolute(folder).map_err(|e| format!("`{folder}` is no folder: {e}"))?;
+    let folder = folder.to_str().ok_or("the name of the current folder is not UTF-8")?;
+    let arguments = ["run", "--locked", "--quiet", "-p", "zeroset-cli", "--example", "man", "--", folder];
+    run(&Step { arguments: &arguments, environment: &[] })
+}
+
 /// Runs a step in the root of the repository; the error says which one failed.
-fn run(step: &Step) -> Result<(), String> {
+fn run(step: &Step<'_>) -> Result<(), String> {
     // Cargo tells its children which cargo it is. A built xtask called by hand takes the one on the path.
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let line = format!("cargo {}", step.arguments.join(" "));

@@ -1,6 +1,6 @@
 //! Lines on standard error and text on standard output.
 
-use std::io::Write;
+use std::io::{IsTerminal, Write};
 
 use crate::error::CliError;
 
@@ -40,5 +40,39 @@ impl Console {
     pub(crate) fn print(text: &str) -> Result<(), CliError> {
         let mut out = std::io::stdout().lock();
         out.write_all(text.as_bytes()).and_then(|()| out.flush()).map_err(CliError::Stdout)
+    }
+}
+
+/// Lines about work that may still fail.
+///
+/// People at a terminal see each at once, and so does a user who asked for all figures. Elsewhere they wait for
+/// [`release`](Self::release), so that a failure is one line and nothing else.
+#[derive(Debug)]
+pub(crate) struct Lines {
+    console: Console,
+    at_once: bool,
+    held: Vec<String>,
+}
+
+impl Lines {
+    pub(crate) fn new(console: Console) -> Self {
+        let at_once = console == Console::Verbose || std::io::stderr().is_terminal();
+        Self { console, at_once, held: Vec::new() }
+    }
+
+    /// A line for a user who did not ask for quiet.
+    pub(crate) fn say(&mut self, line: String) {
+        if self.at_once {
+            self.console.say(&line);
+        } else {
+            self.held.push(line);
+        }
+    }
+
+    /// The work is done: says what was held back.
+    pub(crate) fn release(&mut self) {
+        for line in self.held.drain(..) {
+            self.console.say(&line);
+        }
     }
 }

@@ -63,12 +63,16 @@ pub(crate) enum CliError {
         several: bool,
     },
     /// `--classes` for points that have none.
-    #[error("{inputs}: {}; leave out --classes", no_classes(*some))]
+    #[error("{inputs}: the points have no classes; leave out --classes")]
     NoClasses {
         /// The inputs, in words.
         inputs: String,
-        /// Whether some of the inputs have classes.
-        some: bool,
+    },
+    /// `-` as the output for a mesh.
+    #[error("standard output: meshes are not written there; name a file with one of the suffixes {known}")]
+    MeshToStream {
+        /// The suffixes that are known.
+        known: String,
     },
     /// The threads cannot be started.
     #[error("the threads cannot be started: {0}; give fewer --threads")]
@@ -87,10 +91,6 @@ impl CliError {
             _ => false,
         }
     }
-}
-
-fn no_classes(some: bool) -> &'static str {
-    if some { "some of the inputs have no classes" } else { "the points have no classes" }
 }
 
 /// Several files in words.

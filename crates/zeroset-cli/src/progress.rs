@@ -1,6 +1,7 @@
 //! Progress on a terminal.
 
 use std::io::IsTerminal;
+use std::sync::Once;
 use std::time::{Duration, Instant};
 
 use indicatif::style::ProgressTracker;
@@ -15,10 +16,14 @@ const STEPS: u64 = 1000;
 
 /// Shows stage, share and time left on standard error, and passes Ctrl-C on.
 ///
+/// Until the first share comes there is no bar, which would stand still, but the time that has passed.
+///
 /// Nothing is shown unless standard error is a terminal and the user may be spoken to.
 #[derive(Debug)]
 pub(crate) struct Progress {
     bar: ProgressBar,
+    /// Done when the first share has come.
+    measured: Once,
 }
 
 /// The time left, from the last share that came and the time since then.
@@ -55,14 +60,14 @@ impl ProgressTracker for TimeLeft {
 impl Progress {
     pub(crate) fn new(console: Console) -> Self {
         if console == Console::Quiet || !std::io::stderr().is_terminal() {
-            return Self { bar: ProgressBar::hidden() };
+            return Self { bar: ProgressBar::hidden(), measured: Once::new() };
         }
         let bar = ProgressBar::with_draw_target(Some(STEPS), ProgressDrawTarget::stderr());
-        if let Ok(style) = ProgressStyle::with_template("{spinner} {msg:32} [{bar:24}] {percent:>3} % {left}") {
-            bar.set_style(style.progress_chars("=> ").with_key("left", TimeLeft::default()));
+        if let Ok(style) = ProgressStyle::with_template("{spinner} {msg:32} {elapsed}") {
+            bar.set_style(style);
         }
         bar.enable_steady_tick(Duration::from_millis(100));
-        Self { bar }
+        Self { bar, measured: Once::new() }
     }
 
     /// Takes the bar away, so that lines can follow.
@@ -83,6 +88,11 @@ impl Monitor for Progress {
     }
 
     fn share(&self, done: f64) {
+        self.measured.call_once(|| {
+            if let Ok(style) = ProgressStyle::with_template("{spinner} {msg:32} [{bar:24}] {percent:>3} % {left}") {
+                self.bar.set_style(style.progress_chars("=> ").with_key("left", TimeLeft::default()));
+            }
+        });
         self.bar.set_position((done.clamp(0.0, 1.0) * STEPS as f64) as u64);
     }
 

@@ -10,6 +10,7 @@ use serde::Serialize;
 use zeroset::cloud::Cloud;
 use zeroset::contour::ContourReport;
 use zeroset::fit::FitReport;
+use zeroset::mesh::{DroppedComponents, Mesh, drop_small_components};
 use zeroset::reconstruct::{PlanReport, ReconstructParams, ReconstructReport};
 use zeroset_io::{IoError, MeshFormat, ReadReport, WriteReport, shown, write_atomically};
 
@@ -99,6 +100,23 @@ impl Seconds {
     }
 }
 
+/// What became of the smallest pieces of the mesh.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub(crate) struct ComponentsReport {
+    /// The fewest triangles of a piece that stays; null if all stay.
+    pub(crate) least_triangles: Option<usize>,
+    /// What was left out.
+    pub(crate) dropped: DroppedComponents,
+}
+
+impl ComponentsReport {
+    /// Drops the pieces of fewer triangles, if there is a limit.
+    pub(crate) fn new(least_triangles: Option<usize>, mesh: &mut Mesh) -> Self {
+        let dropped = least_triangles.map(|least| drop_small_components(mesh, least)).unwrap_or_default();
+        Self { least_triangles, dropped }
+    }
+}
+
 /// The mesh file.
 #[derive(Debug, Clone, Serialize)]
 pub(crate) struct OutputReport {
@@ -130,6 +148,8 @@ struct Source {
     points: u64,
     non_finite: u64,
     withheld: u64,
+    /// What the file holds beside positions.
+    attributes: Vec<&'static str>,
 }
 
 #[derive(Debug, Serialize)]
@@ -164,6 +184,7 @@ pub(crate) struct Report<'a> {
     fit: Option<&'a FitReport>,
     contour: Option<&'a ContourReport>,
     mesh: Option<Counts>,
+    components: Option<ComponentsReport>,
     output: Option<OutputReport>,
     seconds: Seconds,
     threads: usize,
@@ -189,6 +210,7 @@ impl<'a> Report<'a> {
             points: source.points,
             non_finite: source.non_finite,
             withheld: source.withheld,
+            attributes: source.attributes.clone(),
         };
         Self {
             schema_version: SCHEMA_VERSION,
@@ -210,6 +232,7 @@ impl<'a> Report<'a> {
             fit: None,
             contour: None,
             mesh: None,
+            components: None,
             output: None,
             seconds,
             threads: rayon::current_num_threads(),
@@ -223,6 +246,7 @@ impl<'a> Report<'a> {
     pub(crate) fn done(
         input: &'a Input,
         done: &'a ReconstructReport,
+        components: ComponentsReport,
         args: &ReconstructArgs,
         params: &ReconstructParams,
         output: Option<OutputReport>,
@@ -240,6 +264,7 @@ impl<'a> Report<'a> {
             fit: Some(&done.fit),
             contour: Some(&done.contour),
             mesh: Some(Counts { vertices: done.vertices, triangles: done.triangles }),
+            components: Some(components),
             output,
             ..Self::planned(input, &done.plan, args, params, seconds)
         }

@@ -215,9 +215,17 @@ fn a_file_without_permission() {
 
 #[test]
 fn bad_standard_input() {
-    for input in [b"".as_slice(), b"words\n", b"1 2 3\n", b"\0\0\0\0"] {
+    for (input, remedy) in [
+        (b"".as_slice(), "check the command in front of the pipe"),
+        (b"words\n", "one point a line"),
+        (b"1 2 3\n", "give at least"),
+        (b"1 2\n", "copy it again"),
+        (b"\0\0\0\0", "pipe in lines of x y z"),
+        (b"LASF\0\0\0\0", "it looks like LAS or LAZ); pipe in lines of x y z"),
+    ] {
         let folder = folder();
-        with_input(folder.path(), "reconstruct - -o out.ply", input).failed("standard stream");
+        let said = with_input(folder.path(), "reconstruct - -o out.ply", input).failed("standard input");
+        assert!(said.starts_with("error: standard input: ") && said.contains(remedy), "{said}");
         assert!(entries(folder.path()).is_empty());
     }
 }

@@ -18,7 +18,7 @@ fn an_unknown_suffix_lists_the_known_ones_before_any_work() {
     let folder = folder();
     for name in ["out.dwg", "out", "-"] {
         let outcome = line(folder.path(), &format!("reconstruct missing.xyz -o {name}"));
-        let said = outcome.failed(if name == "-" { "standard stream" } else { name });
+        let said = outcome.failed(if name == "-" { "standard output" } else { name });
         assert!(said.contains("ply, obj, stl, off, glb"), "{said}");
     }
     let said = line(folder.path(), "sample torus -o out.glb").failed("out.glb");
@@ -65,7 +65,7 @@ fn no_file_is_read_and_written() {
         std::os::unix::fs::symlink("in.ply", folder.path().join("link.ply")).unwrap();
         line(folder.path(), "reconstruct in.ply -o link.ply").failed("link.ply");
     }
-    line(folder.path(), "reconstruct - - -o out.ply").failed("standard stream");
+    line(folder.path(), "reconstruct - - -o out.ply").failed("standard input");
     line(folder.path(), "sample torus -o both.ply --truth both.ply").failed("both.ply");
     assert_eq!(std::fs::read(folder.path().join("in.ply")).unwrap(), before);
     assert!(!folder.path().join("out.ply").exists());

@@ -28,11 +28,14 @@ fn during_the_fit() {
     std::fs::write(folder.path().join("out.ply"), "old").unwrap();
     let before = entries(folder.path());
     let mut command = zeroset(folder.path());
-    command.args(["reconstruct", "in.xyz", "-o", "out.ply", "--resolution", "0.0025", "--report", "report.json"]);
+    command.args(["reconstruct", "in.xyz", "-o", "out.ply", "--resolution", "0.0025", "--report", "report.json", "-v"]);
     let mut child = command.stderr(Stdio::piped()).spawn().unwrap();
     let mut stderr = BufReader::new(child.stderr.take().unwrap());
     let mut line = String::new();
-    // The scene is announced when the plan is made; the fit follows, and takes seconds.
+    // With -v the scene is announced when the plan is made; the fit follows, and takes seconds.
+    stderr.read_line(&mut line).unwrap();
+    assert!(line.starts_with("points: "), "{line}");
+    line.clear();
     stderr.read_line(&mut line).unwrap();
     assert!(line.starts_with("scene: "), "{line}");
     interrupt(&child);

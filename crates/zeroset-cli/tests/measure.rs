@@ -105,7 +105,7 @@ fn info_tells_clouds_from_meshes() {
         outcome.stdout.lines().map(|l| serde_json::from_str::<Value>(l).unwrap()["kind"].clone()).collect();
     assert_eq!(kinds, ["mesh", "cloud"]);
     let text = with_input(folder.path(), "info -", b"1 2 3\n1 2 4\n").ok().stdout;
-    assert!(text.contains("standard stream"), "{text}");
+    assert!(text.contains("standard input"), "{text}");
 }
 
 #[test]

@@ -114,6 +114,7 @@ fn the_report_has_its_fields() {
     assert_eq!(
         names(&report),
         [
+            "components",
             "contour",
             "crs",
             "filters",
@@ -137,7 +138,7 @@ fn the_report_has_its_fields() {
     );
     assert_eq!(report["schema_version"], 1);
     assert_eq!(report["zeroset_version"], env!("CARGO_PKG_VERSION"));
-    assert_eq!(names(&report["inputs"][0]), ["format", "non_finite", "path", "points", "withheld"]);
+    assert_eq!(names(&report["inputs"][0]), ["attributes", "format", "non_finite", "path", "points", "withheld"]);
     assert_eq!(report["inputs"][0]["path"], "in.xyz");
     assert_eq!((&report["inputs"][1]["points"], &report["inputs"][1]["non_finite"]), (&2.into(), &1.into()));
     assert_eq!(report["points"]["used"], 3002);
@@ -221,6 +222,49 @@ fn classes_are_chosen() {
 }
 
 #[test]
+fn inputs_without_classes_count_as_never_classified() {
+    let folder = folder();
+    classified(folder.path());
+    write(&folder.path().join("bare.xyz"), &torus(1000, [0.0; 3]).points);
+    for (words, used, whole) in [
+        ("", 4600, false),
+        ("--exclude none", 5000, false),
+        ("--exclude 2,7", 1000, false),
+        ("--exclude 0,7", 3600, true),
+        ("--classes 2", 3600, true),
+        ("--classes 0,2", 4600, false),
+    ] {
+        for inputs in ["in.las bare.xyz", "bare.xyz in.las"] {
+            let outcome = line(folder.path(), &format!("reconstruct {inputs} --dry-run --report - {words}")).ok();
+            let report: Value = serde_json::from_str(&outcome.stdout).unwrap();
+            assert_eq!(report["points"]["used"], used, "{inputs} {words}");
+            let said =
+                outcome.stderr.contains("bare.xyz has no classes, so") && outcome.stderr.contains("all its 1,000");
+            assert_eq!(said, whole, "{inputs} {words}: {}", outcome.stderr);
+            let note = report["notes"].as_array().unwrap().iter().any(|n| n.as_str().unwrap().contains("class 0"));
+            assert!(note, "{}", report["notes"]);
+        }
+    }
+}
+
+#[test]
+fn vertices_near_points_with_values_get_them() {
+    let folder = folder();
+    // Two tori, two units apart, of which one has colours.
+    let (left, right) = (torus(3000, [0.0; 3]), torus(3000, [2.0, 0.0, 0.0]));
+    let attributes = Attributes { colors: Some(vec![[10, 20, 30]; 3000]), ..Attributes::default() };
+    write_cloud(&folder.path().join("a.ply"), &Cloud { attributes, ..left }, &WriteOptions::default()).unwrap();
+    write(&folder.path().join("b.xyz"), &right.points);
+    let outcome = line(folder.path(), "reconstruct b.xyz a.ply -o out.ply --scene object").ok();
+    assert!(outcome.stderr.contains("note: b.xyz has no colors; its points get white"), "{}", outcome.stderr);
+    let mesh = read_mesh(&folder.path().join("out.ply")).unwrap();
+    for (vertex, color) in mesh.vertices.iter().zip(mesh.attributes.colors.as_ref().unwrap()) {
+        let expected = if vertex[0] < 1.0 { [10, 20, 30] } else { [255; 3] };
+        assert_eq!(*color, expected, "{vertex:?}");
+    }
+}
+
+#[test]
 fn an_empty_choice_names_the_option_that_made_it() {
     let folder = folder();
     classified(folder.path());
@@ -298,12 +342,76 @@ fn surveyed_formats_are_airborne() {
 fn memory_is_kept_or_refused() {
     let folder = folder();
     write(&folder.path().join("in.xyz"), &torus(20_000, [0.0; 3]).points);
-    let outcome = line(folder.path(), "reconstruct in.xyz --dry-run --memory 10MB").ok();
-    assert!(outcome.stderr.contains("warning: memory allows"), "{}", outcome.stderr);
-    // The scene is announced before the work, so more than one line is right here.
-    let said = line(folder.path(), "reconstruct in.xyz -o out.ply --memory 10MB --resolution 0.01 --scene object")
-        .failed("in.xyz");
+    let plan = |words: &str| {
+        let outcome = line(folder.path(), &format!("reconstruct in.xyz --dry-run --report - {words}")).ok();
+        (serde_json::from_str::<Value>(&outcome.stdout).unwrap()["plan"].clone(), outcome.stderr)
+    };
+    let (free, said) = plan("--memory 2GB");
+    assert!(free["wanted_resolution"].is_null() && !said.contains("memory"), "{free} {said}");
+    let (capped, said) = plan("--memory 10MB");
+    assert_eq!(capped["wanted_resolution"], free["resolution"]);
+    assert!(capped["resolution"].as_f64() > free["resolution"].as_f64(), "{capped}");
+    assert!(said.contains("warning: memory allows") && said.contains("the points bear 0.0"), "{said}");
+    let said = line(folder.path(), "reconstruct in.xyz -o out.ply --memory 10MB --resolution 0.01").failed("in.xyz");
     assert!(said.contains("a resolution of 0.01 needs about"), "{said}");
+}
+
+#[test]
+fn a_late_error_is_one_line() {
+    let folder = folder();
+    let mut text = String::from("x y z class\n");
+    for [x, y, z] in torus(3000, [0.0; 3]).points {
+        text += &format!("{x} {y} {z} 2\n");
+    }
+    std::fs::write(folder.path().join("a.csv"), text).unwrap();
+    write(&folder.path().join("b.xyz"), &torus(1000, [0.0; 3]).points);
+    // The files differ in what they hold and the scene is chosen, so there is much to say; but nothing is left of the
+    // mesh.
+    let words = "reconstruct a.csv b.xyz -o out.ply --trim 1e-9";
+    let said = line(folder.path(), words).failed("a.csv");
+    assert!(said.contains("no surface was found"), "{said}");
+    let all = line(folder.path(), &format!("{words} --verbose"));
+    assert_eq!(all.code, Some(1));
+    assert!(all.stderr.contains("scene: object") && all.stderr.contains("note: b.xyz"), "{}", all.stderr);
+}
+
+#[test]
+fn small_pieces_of_open_scenes_are_dropped_and_counted() {
+    let folder = folder();
+    line(folder.path(), "sample city -o city.xyz --points 30000").ok();
+    // Balls of about a cell, high above the roofs.
+    let mut balls = Vec::new();
+    for ball in 1..9 {
+        for i in 0..40 {
+            let (z, angle) = (1.0 - (2.0 * f64::from(i) + 1.0) / 40.0, 2.4 * f64::from(i));
+            let (across, radius) = ((1.0 - z * z).sqrt(), 0.006);
+            let middle = [f64::from(ball) / 9.0, 0.5, 0.25];
+            let direction = [across * angle.cos(), across * angle.sin(), z];
+            balls.push(std::array::from_fn(|a| middle[a] + radius * direction[a]));
+        }
+    }
+    write(&folder.path().join("balls.xyz"), &balls);
+    let mesh = |words: &str| {
+        line(folder.path(), &format!("reconstruct city.xyz balls.xyz -o out.ply --report r.json -q {words}")).ok();
+        let mesh = topology(&read_mesh(&folder.path().join("out.ply")).unwrap()).unwrap();
+        let report = json(&folder.path().join("r.json"));
+        assert_eq!(report["mesh"]["triangles"], mesh.faces);
+        (mesh, report["components"].clone())
+    };
+    let (all, off) = mesh("--scene terrain --min-component off");
+    assert!(off["least_triangles"].is_null() && off["dropped"]["components"] == 0, "{off}");
+    let small = all.components.iter().filter(|c| c.faces < 100);
+    let (pieces, triangles) = small.fold((0, 0), |(n, t), c| (n + 1, t + c.faces));
+    assert!(pieces > 0, "the scene has no small piece to drop");
+    let (kept, usual) = mesh("--scene terrain");
+    assert_eq!(usual["least_triangles"], 100);
+    assert_eq!(usual["dropped"], serde_json::json!({ "components": pieces, "triangles": triangles }));
+    assert_eq!((kept.components.len(), kept.faces), (all.components.len() - pieces, all.faces - triangles));
+    assert!(mesh("--scene object").1["least_triangles"].is_null());
+    // Whatever the limit, the largest piece stays.
+    let (one, most) = mesh("--scene terrain --min-component 1000000000");
+    assert_eq!((one.components.len(), one.faces), (1, all.components[0].faces));
+    assert_eq!(most["dropped"]["components"], all.components.len() - 1);
 }
 
 #[test]

@@ -29,6 +29,7 @@ fn help_tells_what_there_is() {
         "--outliers",
         "--screening",
         "--trim",
+        "--min-component",
         "--attributes",
         "--threads",
         "--memory",
@@ -59,6 +60,7 @@ fn wrong_usage_exits_with_2() {
         "reconstruct in.xyz -o out.ply --bounds 1,2,3",
         "reconstruct in.xyz -o out.ply --bounds 3,0,1,1",
         "reconstruct in.xyz -o out.ply --outliers some",
+        "reconstruct in.xyz -o out.ply --min-component 0",
         "reconstruct in.xyz -o out.ply --threads 0",
         "reconstruct in.xyz -o out.ply --memory much",
         "reconstruct in.xyz -o out.ply --quiet --verbose",
@@ -81,6 +83,25 @@ fn completions_are_for_this_command() {
     for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
         assert!(run(folder.path(), ["completions", shell]).ok().stdout.contains("reconstruct"), "{shell}");
     }
+}
+
+#[test]
+fn manual_pages_tell_every_option() {
+    use clap::CommandFactory;
+    let folder = folder();
+    clap_mangen::generate_to(zeroset_cli::args::Args::command(), folder.path()).unwrap();
+    let commands = ["reconstruct", "sample", "compare", "info", "completions"];
+    for command in commands {
+        let page = std::fs::read_to_string(folder.path().join(format!("zeroset-{command}.1"))).unwrap();
+        assert!(page.contains(".SH SYNOPSIS"), "{page}");
+        let own = zeroset_cli::args::Args::command();
+        let own = own.find_subcommand(command).unwrap();
+        for option in own.get_arguments().filter_map(|argument| argument.get_long()) {
+            assert!(page.contains(&option.replace('-', "\\-")), "{command} --{option}");
+        }
+    }
+    let main = std::fs::read_to_string(folder.path().join("zeroset.1")).unwrap();
+    assert!(commands.iter().all(|command| main.contains(command)), "{main}");
 }
 
 #[test]

@@ -53,13 +53,13 @@ pub enum IoError {
         remedy: &'static str,
     },
     /// The file holds no bytes.
-    #[error("{}: the file is empty; check that it was written or copied completely", shown(path))]
+    #[error("{}: {}", shown(path), empty(path))]
     Empty {
         /// The file.
         path: PathBuf,
     },
     /// The content is not of the format that the suffix promises.
-    #[error("{}: this is not a {expected} file{}; give it the suffix of its true format", shown(path), looks_like(*looks))]
+    #[error("{}: this is not a {expected} file{}; {}", shown(path), looks_like(*looks), rename(path))]
     WrongMagic {
         /// The file.
         path: PathBuf,
@@ -265,10 +265,31 @@ impl IoError {
     }
 }
 
-/// A path as one line of text without control characters; `-` is shown as what it stands for.
+/// A path as one line of text without control characters; `-` is shown as what it stands for among inputs.
 #[must_use]
 pub fn shown(path: &Path) -> String {
-    if path == Path::new("-") { "standard stream".into() } else { clean(&path.display().to_string()) }
+    if is_stream(path) { "standard input".into() } else { clean(&path.display().to_string()) }
+}
+
+fn is_stream(path: &Path) -> bool {
+    path == Path::new("-")
+}
+
+fn empty(path: &Path) -> &'static str {
+    if is_stream(path) {
+        "nothing came in; check the command in front of the pipe"
+    } else {
+        "the file is empty; check that it was written or copied completely"
+    }
+}
+
+/// What to do about content of another format than the name says.
+fn rename(path: &Path) -> &'static str {
+    if is_stream(path) {
+        "pipe in lines of x y z, or name the file instead"
+    } else {
+        "give it the suffix of its true format"
+    }
 }
 
 /// A text without control characters, and cut to a length that a person reads.

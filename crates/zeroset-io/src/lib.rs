@@ -35,7 +35,10 @@ mod number;
 mod output;
 mod ply;
 
-pub use cloud::{CloudFile, LinearUnit, ReadReport, Source, read_cloud, read_cloud_bytes, read_clouds, write_cloud};
+pub use cloud::{
+    CloudFile, LinearUnit, NO_CLASS, NO_COLOR, NO_INTENSITY, ReadReport, Source, read_cloud, read_cloud_bytes,
+    read_clouds, write_cloud,
+};
 pub use error::{IoError, shown};
 pub use format::{CloudFormat, MeshFormat};
 pub use mesh::{WriteOptions, WriteReport, read_mesh, read_mesh_bytes, write_mesh};

@@ -76,6 +76,22 @@ fn bad_clouds() {
         ("wrong magic", "pcd", las.clone(), "not a PCD file"),
         ("wrong magic", "e57", las.clone(), "not a E57 file"),
         ("wrong magic", "xyz", "1 2 3\n".encode_utf16().flat_map(u16::to_le_bytes).collect(), "not a XYZ text"),
+        (
+            "UTF-16 with its mark",
+            "csv",
+            "\u{FEFF}1 2 3\n".encode_utf16().flat_map(u16::to_le_bytes).collect(),
+            "save it as UTF-8",
+        ),
+        ("more values than fields", "pcd", pcd("ascii", "1 2 3 9\n4 5 6 9\n"), "more values than 2 points of 3"),
+        (
+            "more values than properties",
+            "ply",
+            format!("{PLY}1 2 3 9\n4 5 6 9\n").into(),
+            "more values than its header",
+        ),
+        ("decimal commas", "csv", b"x;y;z\n1,5;2,5;3,5\n".to_vec(), "decimal point"),
+        ("decimal commas and whole numbers", "txt", b"100 200,25 3\n".to_vec(), "decimal point"),
+        ("fewer values than names", "csv", b"name,x,y,z\na,1,2\n".to_vec(), "no points"),
         ("only blank lines", "xyz", b"\n\n  \n".to_vec(), "no points"),
         ("header only", "las", patched(las[..375].to_vec(), 96, &375_u32.to_le_bytes()), "promises 4 points"),
         (

@@ -5,8 +5,10 @@ mod common;
 use std::path::Path;
 
 use common::{GEOREFERENCED, SWISS, assert_near, attributes, cloud, folder, world};
+use zeroset::cloud::Attributes;
 use zeroset_io::{
-    CloudFile, CloudFormat, IoError, LinearUnit, WriteOptions, read_cloud, read_cloud_bytes, read_clouds, write_cloud,
+    CloudFile, CloudFormat, IoError, LinearUnit, NO_CLASS, NO_COLOR, NO_INTENSITY, WriteOptions, read_cloud,
+    read_cloud_bytes, read_clouds, write_cloud,
 };
 
 fn read(name: &str, content: impl AsRef<[u8]>) -> Result<CloudFile, IoError> {
@@ -291,6 +293,32 @@ fn text_columns_by_name() {
 }
 
 #[test]
+fn text_columns_are_where_the_header_says() {
+    for text in [
+        // A name with a space; the index column of a table without a name; a number of something beside northing.
+        "GPS time,X,Y,Z,red\n7,1,2,3,9\n8,4.5,-5,6.25,9\n9,7,8,9,9\n",
+        ",x,y,z\n0,1,2,3\n1,4.5,-5,6.25\n2,7,8,9\n",
+        "n,x,y,z,height\n5,1,2,3,0\n6,4.5,-5,6.25,0\n7,7,8,9,0\n",
+        "\"height above ground\";\"x\";\"y\";\"z\"\n5;1;2;3\n6;4.5;-5;6.25\n7;7;8;9\n",
+        // Words, dates, nothing and quoted separators in columns before.
+        "name,date,x,y,z\nNew York,2020-01-01 12:00,1,2,3\n,,4.5,-5,6.25\n\"a, b\",x,7,8,9\n",
+        "tag\tfirst name\tx\ty\tz\n1\t\t1\t2\t3\n\tb c\t4.5\t-5\t6.25\n3\td\t7\t8\t9\n",
+        // Names between commas, values between spaces.
+        "# x,y,z\n1 2 3\n4.5 -5 6.25\n7 8 9\n",
+        "x (m),y (m),z (m)\r\n1,2,3\r\n4.5,-5,6.25\r\n7,8,9\r\n",
+        "+1 +2 +3\n+4.5 -5 +6.25\n7 8 9\n",
+    ] {
+        assert_eq!(points("a.csv", text), THREE, "{text}");
+    }
+    let file = read("a.csv", "x,y,z,time,intensity\n1,2,3,2020-01-01 12:00:00,17\n4,5,6,,18\n").unwrap();
+    assert_eq!(file.cloud.attributes.intensities, Some(vec![17.0, 18.0]));
+    let file = read("a.csv", "\tx\ty\tz\tred\tgreen\tblue\n0\t1\t2\t3\t1\t2\t3\n1\t4\t5\t6\t\t\t\n").unwrap();
+    assert_eq!(file.cloud.attributes.colors, Some(vec![[1, 2, 3], [0; 3]]));
+    let file = read("a.csv", "id,lon,lat,alt\n7,1,2,3\n").unwrap();
+    assert!(file.report.notes[0].starts_with("line 1 names no x, y and z"), "{:?}", file.report.notes);
+}
+
+#[test]
 fn unnamed_text_columns_are_mentioned_and_left_alone() {
     let file = read("a.xyz", "1 2 3 0.1 0.2 0.3\n4 5 6 0.1 0.2 0.3\n").unwrap();
     assert_eq!(file.cloud.attributes, Default::default());
@@ -316,6 +344,12 @@ fn pcd_of_all_three_encodings() {
         assert_eq!(cloud.attributes.colors, expected.colors);
         assert_eq!(cloud.attributes.intensities, expected.intensities);
     }
+}
+
+#[test]
+fn pcd_intensity_is_not_the_index() {
+    let text = "FIELDS i x y z intensity\nSIZE 4 4 4 4 4\nTYPE U F F F F\nCOUNT 1 1 1 1 1\nPOINTS 1\nDATA ascii\n5 1 2 3 0.5\n";
+    assert_eq!(read("a.pcd", text).unwrap().cloud.attributes.intensities, Some(vec![0.5]));
 }
 
 #[test]
@@ -380,6 +414,32 @@ fn e57_joins_scans_and_understands_spherical_points() {
 }
 
 #[test]
+fn e57_keeps_the_colours_of_the_scans_that_have_them() {
+    use e57::{Record, RecordValue};
+    let mut file = std::io::Cursor::new(Vec::new());
+    let mut writer = e57::E57Writer::new(&mut file, "a file").unwrap();
+    let bare = vec![Record::CARTESIAN_X_F32, Record::CARTESIAN_Y_F32, Record::CARTESIAN_Z_F32];
+    let mut colored = bare.clone();
+    colored.extend([Record::COLOR_RED_U8, Record::COLOR_GREEN_U8, Record::COLOR_BLUE_U8]);
+    let place = [1.0, 2.0, 3.0].map(RecordValue::Single);
+    for (name, fields) in [("first", bare), ("second", colored)] {
+        let with_color = fields.len() > 3;
+        let mut scan = writer.add_pointcloud(name, fields).unwrap();
+        let mut values: Vec<_> = place.clone().into();
+        if with_color {
+            values.extend([10, 20, 30].map(RecordValue::Integer));
+        }
+        scan.add_point(values).unwrap();
+        scan.finalize().unwrap();
+    }
+    writer.finalize().unwrap();
+    drop(writer);
+    let back = read("a.e57", file.into_inner()).unwrap();
+    assert_eq!(back.cloud.attributes.colors, Some(vec![NO_COLOR, [10, 20, 30]]));
+    assert_eq!(back.report.notes, ["not every scan has colours; points of the others are white"]);
+}
+
+#[test]
 fn points_without_finite_coordinates_are_dropped_with_their_attributes() {
     let file = read("a.xyz", "x y z class\n1 2 3 1\nnan 2 3 2\n4 inf 6 3\n7 8 9 4\n").unwrap();
     assert_eq!(file.cloud.points, [[1.0, 2.0, 3.0], [7.0, 8.0, 9.0]]);
@@ -400,8 +460,7 @@ fn several_files_become_one_cloud() {
     expected.push([84_000.5, 447_000.25, 1.0]);
     expected.extend(GEOREFERENCED);
     assert_near(&world(all.cloud.world_from_local, &all.cloud.points), &expected, 0.000_501);
-    assert_eq!(all.cloud.attributes, Default::default());
-    assert_eq!(all.report.attributes_left_out, ["colors", "intensities", "classes"]);
+    assert_eq!(all.cloud.attributes.classes, Some(vec![2, 6, 9, 1, 0, 2, 6, 9, 1]));
     assert_eq!((all.report.sources.len(), all.report.points_read, all.report.points_declared), (3, 9, None));
     let counts: Vec<u64> = all.report.sources.iter().map(|source| source.points).collect();
     assert_eq!(counts.iter().sum::<u64>(), all.report.points_read, "{counts:?}");
@@ -409,23 +468,45 @@ fn several_files_become_one_cloud() {
     assert_eq!(all.cloud.crs.as_deref(), Some("EPSG:28992"));
 
     let both = read_clouds(&[first, third]).unwrap();
-    assert!(both.report.attributes_left_out.is_empty() && both.report.notes.is_empty(), "{:?}", both.report);
+    assert!(both.report.notes.is_empty(), "{:?}", both.report);
     assert_eq!(both.cloud.attributes.classes, Some(vec![2, 6, 9, 1, 2, 6, 9, 1]));
     assert_eq!(both.report.points_declared, Some(8));
     assert!(matches!(read_clouds(&[]), Err(IoError::NoInput)));
 }
 
 #[test]
-fn attributes_are_kept_only_if_the_later_file_has_them_too() {
+fn points_of_files_without_an_attribute_get_none() {
     let folder = folder();
     let (bare, full) = (folder.path().join("a.xyz"), folder.path().join("b.ply"));
     std::fs::write(&bare, "1 2 3\n").unwrap();
-    write_cloud(&full, &cloud(GEOREFERENCED), &WriteOptions::default()).unwrap();
+    let given = cloud(GEOREFERENCED);
+    write_cloud(&full, &given, &WriteOptions::default()).unwrap();
     for order in [[&bare, &full, &full], [&full, &bare, &full], [&full, &full, &bare]] {
         let all = read_clouds(&order.map(Clone::clone)).unwrap();
-        assert_eq!(all.cloud.attributes, Default::default());
-        assert_eq!(all.report.attributes_left_out.len(), 3);
+        let (mut colors, mut intensities, mut classes) = (Vec::new(), Vec::new(), Vec::new());
+        for path in order {
+            if *path == bare {
+                colors.push(NO_COLOR);
+                intensities.push(NO_INTENSITY);
+                classes.push(NO_CLASS);
+            } else {
+                colors.extend(given.attributes.colors.iter().flatten());
+                intensities.extend(given.attributes.intensities.iter().flatten());
+                classes.extend(given.attributes.classes.iter().flatten());
+            }
+        }
+        let expected = Attributes { colors: Some(colors), intensities: Some(intensities), classes: Some(classes) };
+        assert_eq!(all.cloud.attributes, expected);
+        let notes: Vec<&String> = all.report.notes.iter().filter(|note| note.contains("has no")).collect();
+        assert_eq!(notes.len(), 1, "{notes:?}");
+        assert!(notes[0].contains("a.xyz has no colors, no intensities, no classes"), "{notes:?}");
+        for (source, path) in all.report.sources.iter().zip(order) {
+            assert_eq!(source.has("classes"), *path == full);
+        }
     }
+    let bare_only = read_clouds(&[bare.clone(), bare]).unwrap();
+    assert_eq!(bare_only.cloud.attributes, Attributes::default());
+    assert!(bare_only.report.notes.is_empty(), "{:?}", bare_only.report.notes);
 }
 
 #[test]

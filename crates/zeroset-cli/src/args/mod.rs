@@ -9,7 +9,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Parser, Subcommand, ValueEnum};
 use zeroset::sample::SceneKind;
 
-pub use values::{Bounds, Classes, Outliers, TrimChoice};
+pub use values::{Bounds, Classes, MinComponent, Outliers, TrimChoice};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -26,6 +26,8 @@ Examples:
   zeroset reconstruct tile.laz --dry-run
 
 Lengths are in the unit of the input, mostly metres.
+Where only some inputs have classes, points of the others count as class 0, never classified: --exclude keeps them and
+--classes drops them unless the list names 0. Where only some have colours or intensities, the others count as white or 0.
 Read are las, laz (COPC too), ply, xyz, txt, csv, asc, pts, pcd and e57; written are ply, obj, stl, off and glb.
 Coordinates stay in the input's reference system; stl and glb hold them less an offset, which is printed.";
 
@@ -141,6 +143,9 @@ pub struct ReconstructArgs {
     /// Drop surface farther than this from the points, or `off` [default: 50 times the spacing; off for objects].
     #[arg(long, value_name = "LENGTH|off", value_parser = values::trim)]
     pub trim: Option<TrimChoice>,
+    /// Drop pieces of fewer than N triangles, but never the largest [default: 100; off for objects].
+    #[arg(long, value_name = "N|off", value_parser = values::min_component)]
+    pub min_component: Option<MinComponent>,
     /// Weight of the points against smoothness, without unit [default: 1 to 16, by the noise of the points over the cell].
     #[arg(long, value_name = "ALPHA", value_parser = values::positive)]
     pub screening: Option<f64>,

@@ -19,6 +19,15 @@ pub enum Outliers {
     Groups(NonZeroUsize),
 }
 
+/// Whether small pieces of the mesh are dropped.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MinComponent {
+    /// No.
+    Off,
+    /// Pieces of fewer triangles.
+    Triangles(NonZeroUsize),
+}
+
 /// How far from the points surface may lie.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum TrimChoice {
@@ -80,6 +89,13 @@ pub(super) fn outliers(text: &str) -> Result<Outliers, String> {
     }
     let groups = text.parse().ok().filter(|k: &NonZeroUsize| k.get() <= 1000);
     groups.map(Outliers::Groups).ok_or_else(|| "`off` or a whole number from 1 to 1000 is needed".into())
+}
+
+pub(super) fn min_component(text: &str) -> Result<MinComponent, String> {
+    if text == "off" {
+        return Ok(MinComponent::Off);
+    }
+    text.parse().map(MinComponent::Triangles).map_err(|_| "`off` or a whole number from 1 is needed".into())
 }
 
 pub(super) fn trim(text: &str) -> Result<TrimChoice, String> {

@@ -11,6 +11,10 @@ use crate::error::CliError;
 /// the formats of the inputs.
 pub(super) fn check(args: &ReconstructArgs) -> Result<Vec<CloudFormat>, CliError> {
     if let Some(output) = &args.output {
+        if is_stream(output) {
+            let known: Vec<&str> = MeshFormat::KNOWN.iter().map(|(suffix, _)| *suffix).collect();
+            return Err(CliError::MeshToStream { known: known.join(", ") });
+        }
         MeshFormat::from_path(output)?;
     }
     let formats = args.inputs.iter().map(|path| CloudFormat::from_path(path)).collect::<Result<_, _>>()?;

@@ -16,11 +16,11 @@ use zeroset::reconstruct::{
 };
 use zeroset_io::{CloudFile, CloudFormat, WriteOptions, read_clouds, shown, write_mesh};
 
-use crate::args::{AttributesChoice, ReconstructArgs, SceneChoice, TrimChoice, UpChoice};
-use crate::console::Console;
+use crate::args::{AttributesChoice, MinComponent, ReconstructArgs, SceneChoice, TrimChoice, UpChoice};
+use crate::console::{Console, Lines};
 use crate::error::{CliError, in_words};
 use crate::progress::Progress;
-use crate::report::{Input, OutputReport, Report, Seconds};
+use crate::report::{ComponentsReport, Input, OutputReport, Report, Seconds};
 use crate::{interrupt, memory};
 
 pub(crate) fn run(args: &ReconstructArgs) -> Result<(), CliError> {
@@ -40,7 +40,8 @@ pub(crate) fn run(args: &ReconstructArgs) -> Result<(), CliError> {
     let mut seconds = Seconds::default();
     let input = read(args, &progress, &mut seconds)?;
     progress.finish();
-    input.describe(console);
+    let mut lines = Lines::new(console);
+    input.describe(console, &mut lines);
 
     let progress = Progress::new(console);
     let failed = |source: ReconstructError| CliError::Reconstruct { inputs: in_words(&args.inputs), source };
@@ -51,25 +52,29 @@ pub(crate) fn run(args: &ReconstructArgs) -> Result<(), CliError> {
     if args.scene == SceneChoice::Auto && params.scene.is_some() {
         plan.report.scene_reason = "every input is las or laz".to_owned();
     }
-    announce(&plan.report, args, console);
+    announce(&plan.report, args, &mut lines);
 
     if args.dry_run {
+        lines.release();
         let report = Report::planned(&input, &plan.report, args, &params, seconds.until(start));
         if !report.goes_to_stdout() {
             Console::print(&text::plan(&plan.report, &input, params.memory))?;
         }
         return report.write();
     }
-    let (mesh, done) = fit(plan, console, failed)?;
+    let (mut mesh, mut done) = fit(plan, console, failed)?;
+    let components = ComponentsReport::new(least_triangles(args, done.plan.scene), &mut mesh);
+    (done.vertices, done.triangles) = (mesh.vertices.len(), mesh.triangles.len());
     let output = write(args, &mesh, &done.plan, &input, console, &mut seconds)?;
     let seconds = seconds.until(start);
+    lines.release();
     if let Some(output) = &output {
         console.say(&text::summary(&done, output, seconds.total, &input));
     }
     if console == Console::Verbose {
-        Console::complain(text::tables(&done, &seconds, &mesh).trim_end());
+        Console::complain(text::tables(&done, &components, &seconds, &mesh).trim_end());
     }
-    Report::done(&input, &done, args, &params, output, seconds).write()
+    Report::done(&input, &done, components, args, &params, output, seconds).write()
 }
 
 /// What was typed, as the core understands it.
@@ -122,18 +127,31 @@ fn read(args: &ReconstructArgs, progress: &Progress, seconds: &mut Seconds) -> R
 
     let start = Instant::now();
     progress.stage("choosing points");
-    let input = select::select(cloud, report, args)?;
+    let input = select::select(cloud, report, args, progress)?;
     seconds.select = start.elapsed().as_secs_f64();
     Ok(input)
 }
 
 /// Says what was decided for the user.
-fn announce(plan: &PlanReport, args: &ReconstructArgs, console: Console) {
+fn announce(plan: &PlanReport, args: &ReconstructArgs, lines: &mut Lines) {
     if args.scene == SceneChoice::Auto {
-        console.say(&text::scene(plan));
+        lines.say(text::scene(plan));
     }
-    if plan.capped_by_memory {
-        console.say(&text::capped(plan));
+    if let Some(wanted) = plan.wanted_resolution {
+        lines.say(text::capped(plan, wanted));
+    }
+}
+
+/// Pieces of open scenes with fewer triangles than this are about two cells across or less; see
+/// [`drop_small_components`](zeroset::mesh::drop_small_components).
+const LEAST_TRIANGLES: usize = 100;
+
+/// The fewest triangles that a piece of the mesh must have. Objects keep all: what is small there may be meant.
+fn least_triangles(args: &ReconstructArgs, scene: Scene) -> Option<usize> {
+    match (args.min_component, scene) {
+        (Some(MinComponent::Off), _) | (None, Scene::Object | Scene::Free) => None,
+        (Some(MinComponent::Triangles(least)), _) => Some(least.get()),
+        (None, Scene::Terrain | Scene::Airborne) => Some(LEAST_TRIANGLES),
     }
 }
 

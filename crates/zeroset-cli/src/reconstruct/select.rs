@@ -1,25 +1,29 @@
 //! Which points are used.
 
 use zeroset::cloud::{Cloud, Filter, NOISE_CLASSES, isolated_points, retain};
-use zeroset_io::ReadReport;
+use zeroset::monitor::Monitor;
+use zeroset_io::{NO_CLASS, ReadReport, Source, shown};
 
 use crate::args::{AttributesChoice, Outliers, ReconstructArgs};
 use crate::cloud_box::bounds;
 use crate::error::{CliError, in_words};
+use crate::interrupt;
 use crate::report::{Dropped, Filters, Input};
 use crate::table::{count, position};
 
 /// Leaves out what the options leave out.
-pub(super) fn select(mut cloud: Cloud, read: ReadReport, args: &ReconstructArgs) -> Result<Input, CliError> {
+pub(super) fn select(
+    mut cloud: Cloud,
+    read: ReadReport,
+    args: &ReconstructArgs,
+    monitor: &dyn Monitor,
+) -> Result<Input, CliError> {
     let filters = filters(args);
     if filters.classes.is_some() && cloud.attributes.classes.is_none() {
-        let some = read.attributes_left_out.contains(&"classes");
-        return Err(CliError::NoClasses { inputs: in_words(&args.inputs), some });
+        return Err(CliError::NoClasses { inputs: in_words(&args.inputs) });
     }
     let mut warnings: Vec<String> = missing_attribute(args, &cloud).into_iter().collect();
-    if !filters.exclude.is_empty() && read.attributes_left_out.contains(&"classes") {
-        warnings.push("some of the inputs have no classes, so no class is left out; use inputs of one kind".to_owned());
-    }
+    warnings.extend(left_out_whole(&filters, &cloud, &read));
     let filter = Filter {
         only_classes: filters.classes.clone(),
         exclude_classes: filters.exclude.clone(),
@@ -35,7 +39,10 @@ pub(super) fn select(mut cloud: Cloud, read: ReadReport, args: &ReconstructArgs)
         isolated: 0,
     };
     if let Some(k) = filters.outliers {
-        let keep: Vec<bool> = isolated_points(&cloud, k).into_iter().map(|isolated| !isolated).collect();
+        monitor.stage("looking for isolated points");
+        let isolated =
+            interrupt::watched(|| isolated_points(&cloud, k, monitor))?.map_err(|_| CliError::Interrupted)?;
+        let keep: Vec<bool> = isolated.into_iter().map(|isolated| !isolated).collect();
         dropped.isolated = retain(&mut cloud, &keep) as u64;
     }
     if cloud.is_empty() {
@@ -63,6 +70,29 @@ fn filters(args: &ReconstructArgs) -> Filters {
         classes,
         exclude,
     }
+}
+
+/// A warning for each input without classes that `--classes` or `--exclude` leaves out as a whole.
+fn left_out_whole(filters: &Filters, cloud: &Cloud, read: &ReadReport) -> Vec<String> {
+    if cloud.attributes.classes.is_none() {
+        return Vec::new();
+    }
+    let option = if filters.exclude.contains(&NO_CLASS) {
+        "--exclude"
+    } else if filters.classes.as_ref().is_some_and(|only| !only.contains(&NO_CLASS)) {
+        "--classes"
+    } else {
+        return Vec::new();
+    };
+    let bare = read.sources.iter().filter(|source| !source.has("classes"));
+    let warning = |source: &Source| {
+        format!(
+            "{} has no classes, so {option} leaves out all its {} points",
+            shown(&source.path),
+            count(source.points)
+        )
+    };
+    bare.map(warning).collect()
 }
 
 /// A warning if values are asked for that the points do not have.

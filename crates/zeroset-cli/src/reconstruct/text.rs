@@ -5,8 +5,8 @@ use zeroset::mesh::{Mesh, topology};
 use zeroset::reconstruct::{PlanReport, ReconstructReport};
 use zeroset_io::LinearUnit;
 
-use crate::console::Console;
-use crate::report::{Input, OutputReport, Seconds};
+use crate::console::{Console, Lines};
+use crate::report::{ComponentsReport, Input, OutputReport, Seconds};
 use crate::table::{bytes, columns, count, decimals_for, pairs, position, significant};
 
 /// The name under which a choice is typed.
@@ -36,21 +36,22 @@ pub(super) fn scene(plan: &PlanReport) -> String {
 }
 
 /// That memory made the result coarser than the points are.
-pub(super) fn capped(plan: &PlanReport) -> String {
+pub(super) fn capped(plan: &PlanReport, wanted: f64) -> String {
     format!(
-        "warning: memory allows for a resolution of {} only, coarser than the points are; give more --memory, or --bounds",
-        significant(plan.resolution, 4)
+        "warning: memory allows for a resolution of {} only, the points bear {}; give more --memory, or --bounds",
+        significant(plan.resolution, 4),
+        significant(wanted, 4)
     )
 }
 
 impl Input {
     /// Says what was read and left out.
-    pub(super) fn describe(&self, console: Console) {
+    pub(super) fn describe(&self, console: Console, lines: &mut Lines) {
         for warning in &self.warnings {
-            console.say(&format!("warning: {warning}"));
+            lines.say(format!("warning: {warning}"));
         }
         for note in &self.read.notes {
-            console.say(&format!("note: {note}"));
+            lines.say(format!("note: {note}"));
         }
         console.detail(&format!("points: {}", self.points_in_words()));
     }
@@ -76,7 +77,9 @@ pub(super) fn plan(plan: &PlanReport, input: &Input, memory: u64) -> String {
     let decimals = decimals_for(plan.resolution);
     let [low, high] = plan.bounds;
     let sides: [f64; 3] = std::array::from_fn(|a| high[a] - low[a]);
-    let cap = if plan.capped_by_memory { ", coarser than the points are, for memory" } else { "" };
+    let cap = plan
+        .wanted_resolution
+        .map_or_else(String::new, |wanted| format!(", for memory; the points bear {}", length(wanted, unit)));
     pairs(&[
         ("points", input.points_in_words()),
         ("box from", position(low, decimals)),
@@ -123,8 +126,24 @@ pub(super) fn summary(done: &ReconstructReport, output: &OutputReport, seconds: 
     text
 }
 
+/// What became of the smallest pieces.
+fn pieces(components: &ComponentsReport) -> String {
+    let Some(least) = components.least_triangles else { return "every piece is kept".to_owned() };
+    format!(
+        "{} pieces of fewer than {} triangles were left out, {} triangles in all",
+        count(components.dropped.components),
+        count(least),
+        count(components.dropped.triangles)
+    )
+}
+
 /// Stages, levels and the mesh, for `--verbose`.
-pub(super) fn tables(done: &ReconstructReport, seconds: &Seconds, mesh: &Mesh) -> String {
+pub(super) fn tables(
+    done: &ReconstructReport,
+    components: &ComponentsReport,
+    seconds: &Seconds,
+    mesh: &Mesh,
+) -> String {
     let clock = |s: f64| format!("{s:.3}");
     let words = |row: &[&str]| row.iter().map(|w| (*w).to_owned()).collect::<Vec<_>>();
     let mut stages = vec![words(&["stage", "seconds"])];
@@ -175,6 +194,7 @@ pub(super) fn tables(done: &ReconstructReport, seconds: &Seconds, mesh: &Mesh) -
             },
         );
     }
+    text += &format!("{}\n", pieces(components));
     if let Some(peak) = crate::memory::peak() {
         text += &format!("{} of memory at most, {} expected\n", bytes(peak), bytes(done.plan.expected_bytes));
     }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use zeroset::cloud::Attributes;
 
-use super::report::{LinearUnit, ReadReport, Source, WorldCloud};
+use super::report::{LinearUnit, ReadReport, Source, WorldCloud, attribute_names};
 use crate::{CloudFormat, IoError, MAX_COORDINATE};
 
 /// Points as a file holds them: world coordinates, nothing left out yet.
@@ -60,7 +60,14 @@ impl Columns {
         let (points_read, non_finite) = (self.points.len() as u64, non_finite + self.invalid);
         let report = ReadReport {
             format,
-            sources: vec![Source { path: path.to_path_buf(), format, points: points_read, non_finite, withheld }],
+            sources: vec![Source {
+                path: path.to_path_buf(),
+                format,
+                points: points_read,
+                non_finite,
+                withheld,
+                attributes: attribute_names(&self.attributes),
+            }],
             points_declared: self.declared,
             points_read,
             non_finite,
@@ -68,7 +75,6 @@ impl Columns {
             unit: self.unit,
             crs: self.crs.clone(),
             facts: self.facts,
-            attributes_left_out: Vec::new(),
             notes: self.notes,
         };
         Ok(WorldCloud { points: self.points, attributes: self.attributes, crs: self.crs, report })

@@ -9,7 +9,7 @@ use std::path::Path;
 use e57::{E57Reader, PointCloud, Record, RecordDataType, RecordName, RecordValue};
 
 use super::Columns;
-use super::report::LinearUnit;
+use super::report::{LinearUnit, NO_COLOR, NO_INTENSITY};
 use crate::IoError;
 use crate::format::sniff;
 use crate::guard::without_panic;
@@ -59,17 +59,17 @@ fn read_scans(path: &Path, bytes: &[u8]) -> Result<Columns, IoError> {
         ..Columns::default()
     };
     let used = || scans.iter().filter(|scan| scan.records > 0);
-    let all = |wanted: &dyn Fn(&Fieldset) -> bool| used().all(|scan| wanted(&Fieldset::of(&scan.prototype)));
-    let any = |wanted: &dyn Fn(&Fieldset) -> bool| used().any(|scan| wanted(&Fieldset::of(&scan.prototype)));
-    let (has_color, has_intensity) = (|set: &Fieldset| set.color.is_some(), |set: &Fieldset| set.intensity.is_some());
-    let mut colors = (any(&has_color) && all(&has_color)).then(Vec::new);
-    let mut intensities = (any(&has_intensity) && all(&has_intensity)).then(Vec::new);
-    for (name, some, kept) in
-        [("colours", any(&has_color), colors.is_some()), ("intensities", any(&has_intensity), intensities.is_some())]
-    {
-        if some && !kept {
-            columns.notes.push(format!("not every scan has {name}; they were left out"));
-        }
+    let share = |wanted: &dyn Fn(&Fieldset) -> bool| {
+        let with = used().filter(|scan| wanted(&Fieldset::of(&scan.prototype))).count();
+        (with > 0).then_some(with < used().count())
+    };
+    let (some_colors, some_intensities) = (share(&|set| set.color.is_some()), share(&|set| set.intensity.is_some()));
+    let (mut colors, mut intensities) = (some_colors.map(|_| Vec::new()), some_intensities.map(|_| Vec::new()));
+    if some_colors == Some(true) {
+        columns.notes.push("not every scan has colours; points of the others are white".into());
+    }
+    if some_intensities == Some(true) {
+        columns.notes.push("not every scan has intensities; points of the others get 0".into());
     }
 
     for scan in used() {
@@ -85,17 +85,19 @@ fn read_scans(path: &Path, bytes: &[u8]) -> Result<Columns, IoError> {
                 continue;
             };
             columns.points.push(pose.apply(local));
-            if let (Some(colors), Some(color), Some(ranges)) = (&mut colors, set.color, &ranges) {
+            if let Some(colors) = &mut colors {
                 let valid = set.color_state.is_none_or(|at| value(at) == 0.0);
-                colors.push(std::array::from_fn(|c| {
-                    let (low, high) = ranges[c];
-                    let share = (value(color[c]) - low) / (high - low);
-                    if valid { (255.0 * share).round() as u8 } else { 0 }
-                }));
+                colors.push(match (set.color, &ranges) {
+                    (Some(color), Some(ranges)) if valid => std::array::from_fn(|c| {
+                        let (low, high) = ranges[c];
+                        (255.0 * (value(color[c]) - low) / (high - low)).round() as u8
+                    }),
+                    _ => NO_COLOR,
+                });
             }
-            if let (Some(intensities), Some(at)) = (&mut intensities, set.intensity) {
+            if let Some(intensities) = &mut intensities {
                 let valid = set.intensity_state.is_none_or(|at| value(at) == 0.0);
-                intensities.push(if valid { value(at) as f32 } else { 0.0 });
+                intensities.push(set.intensity.filter(|_| valid).map_or(NO_INTENSITY, |at| value(at) as f32));
             }
         }
     }

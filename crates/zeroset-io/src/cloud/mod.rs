@@ -11,7 +11,7 @@ mod write;
 
 use std::path::{Path, PathBuf};
 
-pub use report::{CloudFile, LinearUnit, ReadReport, Source};
+pub use report::{CloudFile, LinearUnit, NO_CLASS, NO_COLOR, NO_INTENSITY, ReadReport, Source};
 pub use write::write_cloud;
 
 use crate::input::read_file;
@@ -52,8 +52,9 @@ pub fn read_cloud_bytes(path: &Path, format: CloudFormat, bytes: Vec<u8>) -> Res
 
 /// Reads several files as one cloud, in the order given, with one common offset.
 ///
-/// An attribute is kept only where every input has it; the report names those left out. If the inputs state different
-/// reference systems the first one is kept and the report's notes say so: coordinates are not transformed.
+/// Where only some inputs have an attribute, the points of the others get [`NO_COLOR`], [`NO_INTENSITY`] or [`NO_CLASS`],
+/// and the report's notes say so. If the inputs state different reference systems the first one is kept and the notes
+/// say so, too: coordinates are not transformed.
 ///
 /// # Errors
 /// As [`read_cloud`], for the first input that fails; and [`IoError::NoInput`] for an empty list.

@@ -18,12 +18,15 @@ use crate::ply::header::{Element, Encoding, Header, Property, Scalar};
 pub(crate) fn read(path: &Path, bytes: &[u8]) -> Result<Columns, IoError> {
     let header = Header::parse(path, bytes)?;
     let mut body = Body::new(path, bytes, &header);
-    for element in &header.elements {
+    for (i, element) in header.elements.iter().enumerate() {
         if element.name != "vertex" {
             body.skip(element)?;
             continue;
         }
         let mut columns = vertices(path, &mut body, element, header.encoding)?;
+        if i + 1 == header.elements.len() {
+            body.end()?;
+        }
         columns.declared = Some(element.count);
         columns.crs = header.comment("crs").map(str::to_string);
         columns.unit = header.comment("unit").and_then(LinearUnit::from_name);

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use zeroset::cloud::{Attributes, Cloud};
 
-use crate::CloudFormat;
+use crate::{CloudFormat, shown};
 
 /// The unit of coordinates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -66,7 +66,24 @@ pub struct Source {
     pub non_finite: u64,
     /// Points left out because they are marked as withheld.
     pub withheld: u64,
+    /// What the file holds beside positions: "colors", "intensities", "classes".
+    pub attributes: Vec<&'static str>,
 }
+
+impl Source {
+    /// Whether the file holds an attribute.
+    #[must_use]
+    pub fn has(&self, attribute: &str) -> bool {
+        self.attributes.contains(&attribute)
+    }
+}
+
+/// The colour of points that have none, among points that do: white.
+pub const NO_COLOR: [u8; 3] = [255; 3];
+/// The intensity of points that have none, among points that do.
+pub const NO_INTENSITY: f32 = 0.0;
+/// The class of points that have none, among points that do: "created, never classified".
+pub const NO_CLASS: u8 = 0;
 
 /// What reading a cloud found out.
 #[derive(Debug, Clone, PartialEq)]
@@ -90,8 +107,6 @@ pub struct ReadReport {
     pub crs: Option<String>,
     /// What else the file tells about its origin, as name and value: software, scanner, date, version and so on.
     pub facts: Vec<(&'static str, String)>,
-    /// Attributes that some inputs have and others do not.
-    pub attributes_left_out: Vec<&'static str>,
     /// Sentences about what a user may want to know: columns passed over, conflicts between inputs.
     pub notes: Vec<String>,
 }
@@ -115,20 +130,27 @@ pub(crate) struct WorldCloud {
 }
 
 impl WorldCloud {
-    pub(crate) fn into_file(self) -> CloudFile {
+    pub(crate) fn into_file(mut self) -> CloudFile {
+        let there = attribute_names(&self.attributes);
+        for source in &self.report.sources {
+            let lacks: Vec<&str> = there.iter().copied().filter(|name| !source.has(name)).collect();
+            if !lacks.is_empty() {
+                self.report.notes.push(lacking(&source.path, &lacks));
+            }
+        }
         let cloud = Cloud { attributes: self.attributes, crs: self.crs, ..Cloud::from_world(self.points) };
         CloudFile { cloud, report: self.report }
     }
 
     pub(crate) fn append(&mut self, path: &Path, next: Self) {
-        let left_out = &mut self.report.attributes_left_out;
-        join(&mut self.attributes.colors, next.attributes.colors, "colors", left_out);
-        join(&mut self.attributes.intensities, next.attributes.intensities, "intensities", left_out);
-        join(&mut self.attributes.classes, next.attributes.classes, "classes", left_out);
+        let points = [self.points.len(), next.points.len()];
+        join(&mut self.attributes.colors, next.attributes.colors, points, NO_COLOR);
+        join(&mut self.attributes.intensities, next.attributes.intensities, points, NO_INTENSITY);
+        join(&mut self.attributes.classes, next.attributes.classes, points, NO_CLASS);
         self.points.extend_from_slice(&next.points);
 
         let (report, other) = (&mut self.report, next.report);
-        let name = crate::error::clean(&path.display().to_string());
+        let name = shown(path);
         match (&self.crs, next.crs) {
             (None, Some(crs)) => {
                 report.notes.push(format!("{name} states a reference system, files before it state none"));
@@ -164,15 +186,35 @@ impl WorldCloud {
     }
 }
 
-fn join<T>(all: &mut Option<Vec<T>>, next: Option<Vec<T>>, name: &'static str, left_out: &mut Vec<&'static str>) {
-    match (all.as_mut(), next) {
-        (Some(values), Some(next)) => values.extend(next),
-        (None, None) => {}
-        _ => {
-            *all = None;
-            if !left_out.contains(&name) {
-                left_out.push(name);
-            }
-        }
+/// Appends the values of `points[1]` points to those of `points[0]`; where only one side has values, `none` stands in.
+fn join<T: Clone>(all: &mut Option<Vec<T>>, next: Option<Vec<T>>, points: [usize; 2], none: T) {
+    if all.is_none() && next.is_none() {
+        return;
     }
+    let values = all.get_or_insert_with(|| vec![none.clone(); points[0]]);
+    match next {
+        Some(next) => values.extend(next),
+        None => values.resize(points[0] + points[1], none),
+    }
+}
+
+/// The names of what there is beside positions.
+pub(crate) fn attribute_names(attributes: &Attributes) -> Vec<&'static str> {
+    let there = [
+        ("colors", attributes.colors.is_some()),
+        ("intensities", attributes.intensities.is_some()),
+        ("classes", attributes.classes.is_some()),
+    ];
+    there.into_iter().filter(|(_, there)| *there).map(|(name, _)| name).collect()
+}
+
+/// The sentence about what other inputs have and this one does not.
+fn lacking(path: &Path, names: &[&str]) -> String {
+    let stand_in = |name: &&str| match *name {
+        "colors" => "white",
+        "intensities" => "intensity 0",
+        _ => "class 0 (never classified)",
+    };
+    let stand_ins: Vec<&str> = names.iter().map(stand_in).collect();
+    format!("{} has no {}; its points get {}", shown(path), names.join(", no "), stand_ins.join(", "))
 }

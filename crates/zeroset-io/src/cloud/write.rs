@@ -36,7 +36,7 @@ pub fn write_cloud(path: &Path, cloud: &Cloud, options: &WriteOptions) -> Result
     if path == Path::new("-") {
         let mut out = std::io::stdout().lock();
         let written = write_text(&mut out, cloud, options, CloudFormat::Xyz).and_then(|()| out.flush());
-        return written.map(|()| report).map_err(|source| IoError::from_system(path, source));
+        return written.map(|()| report).map_err(|source| IoError::from_system(Path::new("standard output"), source));
     }
     let write = |fill: &dyn Fn(&mut dyn Sink) -> std::io::Result<()>| write_file(path, |sink| fill(sink));
     report.bytes = match format {

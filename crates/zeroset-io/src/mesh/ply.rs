@@ -46,6 +46,7 @@ pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<Mesh, IoError> {
             _ => body.skip(element)?,
         }
     }
+    body.end()?;
     let mesh = mesh.ok_or_else(|| {
         IoError::malformed(path, "the PLY header has no `vertex` element", "export a mesh with vertices and faces")
     })?;

@@ -157,6 +157,15 @@ impl<'a> Body<'a> {
         Ok(Some(kind.decode(bytes, self.encoding)))
     }
 
+    /// Refuses text that goes on after the last element: then lines have more values than the header says, and all
+    /// that was read may be out of step.
+    pub(crate) fn end(&mut self) -> Result<(), IoError> {
+        if self.encoding == Encoding::Ascii && self.token().is_some() {
+            return Err(IoError::damaged(self.path, "the PLY text has more values than its header says"));
+        }
+        Ok(())
+    }
+
     fn token(&mut self) -> Option<&'a [u8]> {
         let rest = self.bytes.get(self.position..)?;
         let start = rest.iter().position(|b| !b.is_ascii_whitespace())?;

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::Cloud;
+use super::{Attributes, Cloud};
 
 /// ASPRS classes that hold noise: 7 low point, 18 high noise. Left out unless asked for.
 pub const NOISE_CLASSES: [u8; 2] = [7, 18];
@@ -56,20 +56,28 @@ pub fn retain(cloud: &mut Cloud, keep: &[bool]) -> usize {
     let gone = keep.iter().filter(|k| !**k).count();
     if gone > 0 {
         retain_items(&mut cloud.points, keep);
-        if let Some(colors) = &mut cloud.attributes.colors {
-            retain_items(colors, keep);
-        }
-        if let Some(intensities) = &mut cloud.attributes.intensities {
-            retain_items(intensities, keep);
-        }
-        if let Some(classes) = &mut cloud.attributes.classes {
-            retain_items(classes, keep);
-        }
+        cloud.attributes.retain(keep);
     }
     gone
 }
 
-fn retain_items<T>(items: &mut Vec<T>, keep: &[bool]) {
+impl Attributes {
+    /// Keeps the values that `keep` says.
+    pub fn retain(&mut self, keep: &[bool]) {
+        if let Some(colors) = &mut self.colors {
+            retain_items(colors, keep);
+        }
+        if let Some(intensities) = &mut self.intensities {
+            retain_items(intensities, keep);
+        }
+        if let Some(classes) = &mut self.classes {
+            retain_items(classes, keep);
+        }
+    }
+}
+
+/// Keeps the items that `keep` says.
+pub(crate) fn retain_items<T>(items: &mut Vec<T>, keep: &[bool]) {
     let mut keep = keep.iter();
     items.retain(|_| *keep.next().unwrap_or(&true));
 }
@@ -77,7 +85,6 @@ fn retain_items<T>(items: &mut Vec<T>, keep: &[bool]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cloud::Attributes;
 
     fn cloud() -> Cloud {
         Cloud {

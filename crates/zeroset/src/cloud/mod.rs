@@ -6,6 +6,7 @@ mod offset;
 mod outliers;
 mod spacing;
 
+pub(crate) use filter::retain_items;
 pub use filter::{Filter, FilterReport, NOISE_CLASSES, retain};
 pub use noise::noise;
 pub use offset::choose_offset;

@@ -40,7 +40,11 @@ pub fn noise(cloud: &Cloud, tree: &PointTree) -> Option<f64> {
             tree.k_nearest(cloud.points[i], NEIGHBOURHOODS[3], found);
             let near: Vec<Vector3<f64>> =
                 found.iter().map(|n| Vector3::from(cloud.points[n.index]) - Vector3::from(cloud.points[i])).collect();
-            NEIGHBOURHOODS.into_iter().filter(|&k| k <= near.len()).map(|k| off_plane(&near[..k])).fold(f64::INFINITY, f64::min)
+            NEIGHBOURHOODS
+                .into_iter()
+                .filter(|&k| k <= near.len())
+                .map(|k| off_plane(&near[..k]))
+                .fold(f64::INFINITY, f64::min)
         })
         .collect();
     let middle = variances.len() / 2;

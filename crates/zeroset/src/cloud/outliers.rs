@@ -32,6 +32,7 @@
 //! is 0 and g is taken over the others.
 
 use super::Cloud;
+use crate::monitor::{Cancelled, Monitor, Steps};
 use crate::spatial::{Neighbour, PointTree};
 use crate::vec3;
 use rayon::prelude::*;
@@ -46,49 +47,60 @@ const CHUNK: usize = 1 << 12;
 ///
 /// `k` is the number of stray points that may stand together and still be found; 0 is taken as 1. Choose 4 or more:
 /// with 2, chance gaps in a sparse wall are enough to lose a point of it now and then.
-#[must_use]
-pub fn isolated_points(cloud: &Cloud, k: usize) -> Vec<bool> {
-    isolated_with_tree(cloud, &PointTree::new(&cloud.points), k.max(1))
+///
+/// # Errors
+/// [`Cancelled`] if the monitor asked to stop.
+pub fn isolated_points(cloud: &Cloud, k: usize, monitor: &dyn Monitor) -> Result<Vec<bool>, Cancelled> {
+    isolated_with_tree(cloud, &PointTree::new(&cloud.points), k.max(1), monitor)
 }
 
-fn isolated_with_tree(cloud: &Cloud, tree: &PointTree, k: usize) -> Vec<bool> {
+fn isolated_with_tree(
+    cloud: &Cloud,
+    tree: &PointTree,
+    k: usize,
+    monitor: &dyn Monitor,
+) -> Result<Vec<bool>, Cancelled> {
     let mut isolated: Vec<bool> = cloud.points.par_iter().map(|p| !vec3::is_finite(*p)).collect();
     if tree.len() <= k {
-        return isolated;
+        return Ok(isolated);
     }
     // In spatial order the searches of a task touch the same memory.
     let order: Vec<usize> = tree.spatial_order().collect();
-    let in_order: Vec<f64> = order
-        .par_chunks(CHUNK)
-        .flat_map_iter(|chunk| {
-            let mut found = Vec::with_capacity(k + 1);
-            chunk.iter().map(move |&i| {
-                tree.k_nearest(cloud.points[i], k + 1, &mut found);
-                found[k].distance_squared.sqrt()
-            })
-        })
-        .collect();
+    // The few candidates take the last tenth at most.
+    let steps = Steps::new(monitor, 0.0..0.9, order.len());
+    let reaches = order.par_chunks(CHUNK).map(|chunk| {
+        let mut found = Vec::with_capacity(k + 1);
+        let reach = |&i: &usize| {
+            tree.k_nearest(cloud.points[i], k + 1, &mut found);
+            found[k].distance_squared.sqrt()
+        };
+        let reaches: Vec<f64> = chunk.iter().map(reach).collect();
+        steps.advance(chunk.len()).map(|()| reaches)
+    });
+    let in_order = reaches.collect::<Result<Vec<_>, _>>()?.concat();
     let mut reach = vec![0.0; cloud.len()];
     for (&i, r) in order.iter().zip(&in_order) {
         reach[i] = *r;
     }
     let Some(usual) = median(in_order.into_iter().filter(|r| *r > 0.0).collect()) else {
-        return isolated;
+        return Ok(isolated);
     };
     let candidates: Vec<usize> = order.into_iter().filter(|&i| reach[i] > EMPTIER * usual).collect();
-    let found: Vec<usize> = candidates
-        .into_par_iter()
-        .filter(|&i| {
-            let mut found: Vec<Neighbour> = Vec::with_capacity(2 * k + 1);
-            tree.k_nearest(cloud.points[i], 2 * k + 1, &mut found);
-            let others = found.iter().filter(|n| n.index != i).take(2 * k).map(|n| reach[n.index]).collect();
-            median(others).is_some_and(|around| reach[i] > EMPTIER * around)
-        })
-        .collect();
-    for i in found {
+    let steps = Steps::new(monitor, 0.9..1.0, candidates.len());
+    let apart = |i: usize| {
+        let mut found: Vec<Neighbour> = Vec::with_capacity(2 * k + 1);
+        tree.k_nearest(cloud.points[i], 2 * k + 1, &mut found);
+        let others = found.iter().filter(|n| n.index != i).take(2 * k).map(|n| reach[n.index]).collect();
+        median(others).is_some_and(|around| reach[i] > EMPTIER * around)
+    };
+    let found = candidates.par_chunks(CHUNK).map(|chunk| {
+        let found: Vec<usize> = chunk.iter().copied().filter(|&i| apart(i)).collect();
+        steps.advance(chunk.len()).map(|()| found)
+    });
+    for i in found.collect::<Result<Vec<_>, _>>()?.concat() {
         isolated[i] = true;
     }
-    isolated
+    Ok(isolated)
 }
 
 /// The lower median.
@@ -114,7 +126,7 @@ mod tests {
         for kind in SceneKind::ALL {
             let cloud = Scene::new(kind, 2).points(30_000, 0.001, 1);
             for k in [4, 8, 16] {
-                let n = count(&isolated_points(&cloud, k));
+                let n = count(&isolated_points(&cloud, k, &()).unwrap());
                 assert_eq!(n, 0, "{kind}, k = {k}");
             }
         }
@@ -126,11 +138,11 @@ mod tests {
         // Spacing 0.0045; the flock of three stands together, far from all else.
         let strays = [[0.5, 0.5, 0.6], [0.2, 0.8, -0.5], [0.7, 0.1, 0.9], [0.7, 0.1, 0.901], [0.701, 0.1, 0.9]];
         cloud.points.splice(1000..1000, strays);
-        let mask = isolated_points(&cloud, 4);
+        let mask = isolated_points(&cloud, 4, &()).unwrap();
         let found: Vec<usize> = (0..mask.len()).filter(|&i| mask[i]).collect();
         assert_eq!(found, [1000, 1001, 1002, 1003, 1004]);
         // With k = 2 the flock holds together.
-        let mask = isolated_points(&cloud, 2);
+        let mask = isolated_points(&cloud, 2, &()).unwrap();
         assert_eq!(mask[1000..1005], [true, true, false, false, false]);
     }
 
@@ -148,20 +160,20 @@ mod tests {
                 cloud.points.push([2.0 + f64::from(i) * 0.08, f64::from(j) * 0.08, 0.0]);
             }
         }
-        assert_eq!(count(&isolated_points(&cloud, 6)), 0);
+        assert_eq!(count(&isolated_points(&cloud, 6, &()).unwrap()), 0);
         cloud.points.push([3.0, 1.0, 3.0]);
-        assert_eq!(isolated_points(&cloud, 6).iter().rposition(|m| *m), Some(40_400));
+        assert_eq!(isolated_points(&cloud, 6, &()).unwrap().iter().rposition(|m| *m), Some(40_400));
     }
 
     #[test]
     fn few_equal_and_broken_points_are_legal() {
-        assert!(isolated_points(&Cloud::default(), 4).is_empty());
+        assert!(isolated_points(&Cloud::default(), 4, &()).unwrap().is_empty());
         let points = vec![[0.0; 3], [1.0, 0.0, 0.0], [f64::NAN, 0.0, 0.0]];
         let cloud = Cloud { points, ..Cloud::default() };
-        assert_eq!(isolated_points(&cloud, 4), [false, false, true]);
-        assert_eq!(isolated_points(&cloud, 0), [false, false, true]);
+        assert_eq!(isolated_points(&cloud, 4, &()).unwrap(), [false, false, true]);
+        assert_eq!(isolated_points(&cloud, 0, &()).unwrap(), [false, false, true]);
         let equal = Cloud { points: vec![[1.0; 3]; 100], ..Cloud::default() };
-        assert_eq!(count(&isolated_points(&equal, 4)), 0);
+        assert_eq!(count(&isolated_points(&equal, 4, &()).unwrap()), 0);
     }
 
     #[test]
@@ -169,6 +181,28 @@ mod tests {
         let mut cloud = Scene::new(SceneKind::Sphere, 0).points(5000, 0.0, 1);
         let doubled: Vec<_> = cloud.points[..4000].iter().flat_map(|p| [*p; 9]).collect();
         cloud.points.extend(doubled);
-        assert_eq!(count(&isolated_points(&cloud, 8)), 0);
+        assert_eq!(count(&isolated_points(&cloud, 8, &()).unwrap()), 0);
+    }
+
+    #[test]
+    fn the_monitor_sees_shares_and_can_stop_it() {
+        use std::sync::Mutex;
+        struct Log(Mutex<Vec<f64>>, usize);
+        impl Monitor for Log {
+            fn share(&self, done: f64) {
+                self.0.lock().unwrap().push(done);
+            }
+            fn cancelled(&self) -> bool {
+                self.0.lock().unwrap().len() >= self.1
+            }
+        }
+        let mut cloud = Scene::new(SceneKind::Torus, 1).points(20_000, 0.001, 1);
+        cloud.points.push([5.0, 0.0, 0.0]);
+        let patient = Log(Mutex::default(), usize::MAX);
+        let isolated = isolated_points(&cloud, 4, &patient).unwrap();
+        assert_eq!(isolated.iter().rposition(|m| *m), Some(20_000));
+        let shares = patient.0.into_inner().unwrap();
+        assert!(shares.len() >= 6 && shares.is_sorted() && shares.last() == Some(&1.0), "{shares:?}");
+        assert!(isolated_points(&cloud, 4, &Log(Mutex::default(), 2)).is_err());
     }
 }

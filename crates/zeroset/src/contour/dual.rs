@@ -1,5 +1,7 @@
 //! One vertex in each active tetrahedron, one polygon around each crossed edge.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -29,9 +31,14 @@ pub struct ContourReport {
 /// Values at nodes 0..=8 of a block; NaN where unknown.
 type Corner9 = [f32; 729];
 
-/// An active block: where its tetrahedra's vertices begin, and which tetrahedra of each cell are active.
+/// A corner of the cell is unknown.
+const CUT: u32 = 1 << 22;
+/// Blocks whose triangles are made at once: enough for all threads, and few against a large field.
+const BLOCKS_AT_ONCE: usize = 2048;
+
+/// A block with cells that are active or cut.
 struct ActiveBlock {
-    /// For each cell the number of vertices before it in the block (low 16 bits) and its six active tetrahedra (above).
+    /// For each cell the number of vertices before it in the block (low 16 bits), its six active tetrahedra (above), or [`CUT`].
     cells: Box<[u32; 512]>,
     /// Number of vertices of the block.
     count: u32,
@@ -50,25 +57,26 @@ pub fn contour(field: &LatticeField, keep: impl Fn([f64; 3]) -> bool + Sync) -> 
         first_vertex.push(total);
         total += block.as_ref().map_or(0, |a| a.count);
     }
-    let vertices = place_vertices(field, &active);
-    let parts: Vec<(Vec<[u32; 3]>, usize)> = (0..active.len())
-        .into_par_iter()
-        .with_min_len(8)
-        .map(|b| {
-            if active[b].is_some() {
-                polygons(field, b, &active, &first_vertex, &vertices, &keep)
-            } else {
-                (Vec::new(), 0)
-            }
-        })
-        .collect();
-    let trimmed_polygons = parts.iter().map(|p| p.1).sum();
-    let mut triangles = Vec::with_capacity(parts.iter().map(|p| p.0.len()).sum());
-    for (part, _) in parts {
-        triangles.extend_from_slice(&part);
+    let vertices = place_vertices(field, &active, total);
+    let rim: Vec<AtomicBool> = (0..total).into_par_iter().map(|_| AtomicBool::new(false)).collect();
+    let rings = Rings { field, active: &active, first_vertex: &first_vertex, vertices: &vertices, rim: &rim };
+    let mut triangles = Vec::new();
+    let mut trimmed_polygons = 0;
+    for first in (0..active.len()).step_by(BLOCKS_AT_ONCE) {
+        let parts: Vec<(Vec<[u32; 3]>, usize)> = (first..active.len().min(first + BLOCKS_AT_ONCE))
+            .into_par_iter()
+            .with_min_len(8)
+            .map(|b| rings.polygons(b, &keep))
+            .collect();
+        for (part, trimmed) in parts {
+            triangles.extend_from_slice(&part);
+            trimmed_polygons += trimmed;
+        }
     }
+    drop((active, first_vertex));
+    let rim: Vec<bool> = rim.into_iter().map(AtomicBool::into_inner).collect();
     let mut mesh = Mesh { vertices, triangles, ..Mesh::default() };
-    let split_vertices = split_fans(&mut mesh);
+    let split_vertices = split_fans(&mut mesh, &rim);
     (mesh, ContourReport { active_tetrahedra: total as usize, trimmed_polygons, split_vertices })
 }
 
@@ -137,39 +145,39 @@ const ACTIVE: [u8; 256] = {
 fn activate(field: &LatticeField, b: usize) -> Option<ActiveBlock> {
     let values = corner_values(field, b)?;
     let mut cells = Box::new([0; 512]);
-    let mut count = 0;
+    let (mut count, mut cut) = (0, false);
     for local in 0..512 {
-        let tetrahedra = corner_signs(&values, local).map_or(0, |signs| ACTIVE[signs]);
-        cells[local] = count | u32::from(tetrahedra) << 16;
-        count += tetrahedra.count_ones();
+        let entry = corner_signs(&values, local).map_or(CUT, |signs| u32::from(ACTIVE[signs]) << 16);
+        cells[local] = count | entry;
+        count += (entry & !CUT).count_ones();
+        cut |= entry == CUT;
     }
-    (count > 0).then_some(ActiveBlock { cells, count })
+    (count > 0 || cut).then_some(ActiveBlock { cells, count })
 }
 
-fn place_vertices(field: &LatticeField, active: &[Option<ActiveBlock>]) -> Vec<[f64; 3]> {
-    let parts: Vec<Vec<[f64; 3]>> = active
-        .par_iter()
-        .enumerate()
-        .with_min_len(8)
-        .map(|(b, block)| {
-            let (Some(block), Some(values)) = (block, corner_values(field, b)) else { return Vec::new() };
-            let corner = field.blocks.coordinates[b].map(|c| f64::from(8 * c));
-            let mut placed = Vec::with_capacity(block.count as usize);
-            for (local, cell) in block.cells.iter().enumerate() {
-                let origin = [local & 7, local >> 3 & 7, local >> 6];
-                for t in (0..6).filter(|t| cell >> (16 + t) & 1 == 1) {
-                    let p = vertex_in_tetrahedron(&values, origin, t);
-                    let node = std::array::from_fn(|a| corner[a] + origin[a] as f64 + p[a]);
-                    placed.push(field.lattice.position(field.lattice.finest, node));
-                }
-            }
-            placed
-        })
-        .collect();
-    let mut vertices = Vec::with_capacity(parts.iter().map(Vec::len).sum());
-    for part in parts {
-        vertices.extend_from_slice(&part);
+fn place_vertices(field: &LatticeField, active: &[Option<ActiveBlock>], total: u32) -> Vec<[f64; 3]> {
+    let mut vertices = vec![[0.0; 3]; total as usize];
+    let mut rest = vertices.as_mut_slice();
+    let mut places = Vec::with_capacity(active.len());
+    for (b, block) in active.iter().enumerate() {
+        let Some(block) = block else { continue };
+        let (own, after) = rest.split_at_mut(block.count as usize);
+        places.push((b, block, own));
+        rest = after;
     }
+    places.into_par_iter().with_min_len(8).for_each(|(b, block, own)| {
+        let Some(values) = corner_values(field, b) else { return };
+        let corner = field.blocks.coordinates[b].map(|c| f64::from(8 * c));
+        let mut own = own.iter_mut();
+        for (local, cell) in block.cells.iter().enumerate() {
+            let origin = [local & 7, local >> 3 & 7, local >> 6];
+            for (t, vertex) in (0..6).filter(|t| cell >> (16 + t) & 1 == 1).zip(&mut own) {
+                let p = vertex_in_tetrahedron(&values, origin, t);
+                let node = std::array::from_fn(|a| corner[a] + origin[a] as f64 + p[a]);
+                *vertex = field.lattice.position(field.lattice.finest, node);
+            }
+        }
+    });
     vertices
 }
 
@@ -198,73 +206,78 @@ fn vertex_in_tetrahedron(values: &Corner9, origin: [usize; 3], t: usize) -> [f64
     sum.map(|s| s / count)
 }
 
-/// The triangles around the crossed edges that begin at the nodes of block `b`, and the number of polygons trimmed.
-fn polygons(
-    field: &LatticeField,
-    b: usize,
-    active: &[Option<ActiveBlock>],
-    first_vertex: &[u32],
-    vertices: &[[f64; 3]],
-    keep: &(impl Fn([f64; 3]) -> bool + Sync),
-) -> (Vec<[u32; 3]>, usize) {
-    let Some(values) = corner_values(field, b) else { return (Vec::new(), 0) };
-    let neighbors = &field.blocks.neighbors[b];
-    let corner = field.blocks.coordinates[b].map(|c| f64::from(8 * c));
-    let mut triangles = Vec::new();
-    let mut trimmed = 0;
-    for local in 0..512_usize {
-        let origin = [local & 7, local >> 3 & 7, local >> 6];
-        let here = values[origin[0] + 9 * origin[1] + 81 * origin[2]];
-        for subset in 1..8_usize {
-            let step: [usize; 3] = std::array::from_fn(|a| subset >> a & 1);
-            let there = values[origin[0] + step[0] + 9 * (origin[1] + step[1]) + 81 * (origin[2] + step[2])];
-            if here.is_nan() || there.is_nan() || (here < 0.0) == (there < 0.0) {
-                continue;
+/// What the polygons are made from.
+struct Rings<'a> {
+    field: &'a LatticeField,
+    active: &'a [Option<ActiveBlock>],
+    first_vertex: &'a [u32],
+    vertices: &'a [[f64; 3]],
+    /// Set for each vertex that loses a polygon.
+    rim: &'a [AtomicBool],
+}
+
+impl Rings<'_> {
+    /// The triangles around the crossed edges that begin at the nodes of block `b`, and the number of polygons trimmed.
+    fn polygons(&self, b: usize, keep: &(impl Fn([f64; 3]) -> bool + Sync)) -> (Vec<[u32; 3]>, usize) {
+        let field = self.field;
+        let (Some(block), Some(values)) = (&self.active[b], corner_values(field, b)) else { return (Vec::new(), 0) };
+        let corner = field.blocks.coordinates[b].map(|c| f64::from(8 * c));
+        let mut triangles = Vec::new();
+        let mut trimmed = 0;
+        // The cell itself is part of the ring of each edge that begins at its first corner.
+        for (local, _) in block.cells.iter().enumerate().filter(|(_, entry)| *entry >> 16 != 0) {
+            let origin = [local & 7, local >> 3 & 7, local >> 6];
+            let here = values[origin[0] + 9 * origin[1] + 81 * origin[2]];
+            for subset in 1..8_usize {
+                let step: [usize; 3] = std::array::from_fn(|a| subset >> a & 1);
+                let there = values[origin[0] + step[0] + 9 * (origin[1] + step[1]) + 81 * (origin[2] + step[2])];
+                if here.is_nan() || there.is_nan() || (here < 0.0) == (there < 0.0) {
+                    continue;
+                }
+                let ring = self.ring(b, origin, subset);
+                let whole = ring.len == RINGS[subset].len();
+                let kept = whole && {
+                    let s = f64::from(here) / (f64::from(here) - f64::from(there));
+                    let node = std::array::from_fn(|a| corner[a] + origin[a] as f64 + s * step[a] as f64);
+                    keep(field.lattice.position(field.lattice.finest, node))
+                };
+                if kept {
+                    emit_polygon(&ring, subset, here < 0.0, self.vertices, &mut triangles);
+                } else {
+                    trimmed += usize::from(whole);
+                    ring.ids[..ring.len].iter().for_each(|&id| self.rim[id as usize].store(true, Ordering::Relaxed));
+                }
             }
-            let Some(ring) = ring_vertices(origin, subset, neighbors, active, first_vertex) else { continue };
-            let s = f64::from(here) / (f64::from(here) - f64::from(there));
-            let node = std::array::from_fn(|a| corner[a] + origin[a] as f64 + s * step[a] as f64);
-            if !keep(field.lattice.position(field.lattice.finest, node)) {
-                trimmed += 1;
-                continue;
-            }
-            emit_polygon(&ring, subset, here < 0.0, vertices, &mut triangles);
         }
+        (triangles, trimmed)
     }
-    (triangles, trimmed)
+
+    /// The vertices around an edge; fewer than its tetrahedra where the ring is cut by the rim of what is known.
+    fn ring(&self, b: usize, origin: [usize; 3], subset: usize) -> Ring {
+        let mut ring = Ring { ids: [0; 6], len: 0 };
+        for member in &RINGS[subset] {
+            let cell: [i32; 3] = std::array::from_fn(|a| origin[a] as i32 + member.step[a]);
+            let other = self.field.blocks.neighbors[b][neighbor_code(cell.map(|c| if c < 0 { -1 } else { 0 }))];
+            if other == NONE {
+                continue;
+            }
+            let Some(block) = &self.active[other as usize] else { continue };
+            let entry = block.cells[(cell[0] & 7 | (cell[1] & 7) << 3 | (cell[2] & 7) << 6) as usize];
+            let tetrahedra = entry >> 16;
+            if tetrahedra >> member.tetrahedron & 1 == 1 {
+                let before = (tetrahedra & ((1 << member.tetrahedron) - 1)).count_ones();
+                ring.ids[ring.len] = self.first_vertex[other as usize] + (entry & 0xffff) + before;
+                ring.len += 1;
+            }
+        }
+        ring
+    }
 }
 
 /// At most six vertices.
 struct Ring {
     ids: [u32; 6],
     len: usize,
-}
-
-/// The vertices of the ring around an edge; `None` where the ring is cut by the rim of what is known.
-fn ring_vertices(
-    origin: [usize; 3],
-    subset: usize,
-    neighbors: &[u32; 27],
-    active: &[Option<ActiveBlock>],
-    first_vertex: &[u32],
-) -> Option<Ring> {
-    let mut ring = Ring { ids: [0; 6], len: RINGS[subset].len() };
-    for (id, member) in ring.ids.iter_mut().zip(&RINGS[subset]) {
-        let cell: [i32; 3] = std::array::from_fn(|a| origin[a] as i32 + member.step[a]);
-        let other = neighbors[neighbor_code(cell.map(|c| if c < 0 { -1 } else { 0 }))];
-        if other == NONE {
-            return None;
-        }
-        let local = (cell[0] & 7 | (cell[1] & 7) << 3 | (cell[2] & 7) << 6) as usize;
-        let entry = active[other as usize].as_ref()?.cells[local];
-        let tetrahedra = entry >> 16;
-        if tetrahedra >> member.tetrahedron & 1 == 0 {
-            return None;
-        }
-        let before = (tetrahedra & ((1 << member.tetrahedron) - 1)).count_ones();
-        *id = first_vertex[other as usize] + (entry & 0xffff) + before;
-    }
-    Some(ring)
 }
 
 /// Cuts a ring into triangles that face from inside to outside.

@@ -1,61 +1,61 @@
 //! Makes every vertex one fan, and drops vertices without triangles.
 
+use rayon::prelude::*;
+
 use crate::mesh::Mesh;
 
 /// Splits each vertex in which several fans of triangles meet, one copy a fan, and drops unused vertices. Returns the number of
 /// copies made. Triangles keep their order; vertices are numbered by first use of the old numbers.
-pub(super) fn split_fans(mesh: &mut Mesh) -> usize {
-    let n = mesh.vertices.len();
-    // Triangles around each vertex.
-    let mut first = vec![0_u32; n + 1];
-    for &v in mesh.triangles.iter().flatten() {
-        first[v as usize + 1] += 1;
+///
+/// `rim` tells the vertices around which a polygon is missing: all others are one fan.
+pub(super) fn split_fans(mesh: &mut Mesh, rim: &[bool]) -> usize {
+    // Triangles around each vertex on the rim, star after star.
+    let mut corners: Vec<(u32, u32)> = mesh
+        .triangles
+        .par_iter()
+        .enumerate()
+        .flat_map_iter(|(t, corners)| corners.iter().filter(|&&v| rim[v as usize]).map(move |&v| (v, t as u32)))
+        .collect();
+    corners.par_sort_unstable();
+    let (mut copies, mut moved) = (Vec::new(), Vec::new());
+    let mut fan: Vec<u32> = Vec::new();
+    for star in corners.chunk_by(|a, b| a.0 == b.0) {
+        let v = star[0].0;
+        let fans = label_fans(&mesh.triangles, star, &mut fan);
+        copies.extend((1..fans).map(|_| v));
+        moved.extend(star.iter().zip(&fan).filter(|(_, f)| **f > 0).map(|(&(v, t), &f)| (v, t, f)));
     }
-    for v in 0..n {
-        first[v + 1] += first[v];
-    }
-    let mut cursor = first.clone();
-    let mut around = vec![0_u32; mesh.triangles.len() * 3];
-    for (t, triangle) in mesh.triangles.iter().enumerate() {
-        for &v in triangle {
-            around[cursor[v as usize] as usize] = t as u32;
-            cursor[v as usize] += 1;
-        }
-    }
-    drop(cursor);
-    let mut vertices = Vec::with_capacity(n);
-    let mut splits = 0;
-    let mut fan: Vec<usize> = Vec::new();
-    let old = mesh.triangles.clone();
-    for v in 0..n {
-        let star = &around[first[v] as usize..first[v + 1] as usize];
-        if star.is_empty() {
-            continue;
-        }
-        let fans = label_fans(&old, star, v as u32, &mut fan);
-        for (&t, &f) in star.iter().zip(&fan) {
-            for (corner, &was) in mesh.triangles[t as usize].iter_mut().zip(&old[t as usize]) {
-                if was == v as u32 {
-                    *corner = (vertices.len() + f) as u32;
-                }
-            }
-        }
-        for _ in 0..fans {
+    drop(corners);
+
+    let mut used = vec![false; mesh.vertices.len()];
+    mesh.triangles.iter().flatten().for_each(|&v| used[v as usize] = true);
+    let (mut number, mut vertices) = (vec![0_u32; used.len()], Vec::with_capacity(used.len()));
+    let mut next_copy = copies.iter().peekable();
+    for v in (0..used.len()).filter(|&v| used[v]) {
+        number[v] = vertices.len() as u32;
+        vertices.push(mesh.vertices[v]);
+        while next_copy.next_if(|copy| **copy as usize == v).is_some() {
             vertices.push(mesh.vertices[v]);
         }
-        splits += fans - 1;
     }
     mesh.vertices = vertices;
-    splits
+    mesh.triangles.par_iter_mut().for_each(|corners| *corners = corners.map(|v| number[v as usize]));
+    for (v, t, fan) in moved {
+        for corner in mesh.triangles[t as usize].iter_mut().filter(|corner| **corner == number[v as usize]) {
+            *corner += fan;
+        }
+    }
+    copies.len()
 }
 
-/// Numbers the fans of a star: triangles that share an edge at `v` belong together. Returns the number of fans.
-fn label_fans(triangles: &[[u32; 3]], star: &[u32], v: u32, fan: &mut Vec<usize>) -> usize {
-    const UNSEEN: usize = usize::MAX;
+/// Numbers the fans of a star, given as its vertex with each of the triangles: triangles that share an edge at the vertex belong
+/// together. Returns the number of fans.
+fn label_fans(triangles: &[[u32; 3]], star: &[(u32, u32)], fan: &mut Vec<u32>) -> u32 {
+    const UNSEEN: u32 = u32::MAX;
     fan.clear();
     fan.resize(star.len(), UNSEEN);
     // The other two corners of a triangle.
-    let rim = |t: u32| {
+    let rim = |(v, t): (u32, u32)| {
         let [a, b, c] = triangles[t as usize];
         if a == v {
             [b, c]
@@ -97,7 +97,7 @@ mod tests {
             triangles: vec![[1, 2, 3], [1, 4, 5]],
             ..Mesh::default()
         };
-        assert_eq!(split_fans(&mut mesh), 1);
+        assert_eq!(split_fans(&mut mesh, &[false, true, false, false, false, false]), 1);
         assert_eq!(mesh.vertices.len(), 6);
         assert_ne!(mesh.triangles[0][0], mesh.triangles[1][0]);
         assert_eq!(mesh.vertices[mesh.triangles[1][0] as usize], [0.0; 3]);

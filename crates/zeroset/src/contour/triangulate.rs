@@ -39,15 +39,24 @@ fn slimness(p: [[f64; 3]; 3], normal: [f64; 3]) -> f64 {
 
 /// The triangles of a ring's polygon with the least worst triangle. `normal` is the unit direction that the polygon faces.
 pub(super) fn triangulate(polygon: &[[f64; 3]], normal: [f64; 3], mut emit: impl FnMut([usize; 3])) {
-    let cost =
-        |triangles: &[[usize; 3]]| -> f64 { triangles.iter().map(|t| slimness(t.map(|v| polygon[v]), normal)).sum() };
+    // Costs are positive: a sum that has reached the least so far need not be finished.
+    let cost = |triangles: &[[usize; 3]], least: f64| -> f64 {
+        let mut sum = 0.0;
+        for t in triangles {
+            sum += slimness(t.map(|v| polygon[v]), normal);
+            if sum >= least {
+                break;
+            }
+        }
+        sum
+    };
     let best: &[[usize; 3]] = if polygon.len() == 4 {
-        let costs = QUADRANGLE.map(|t| cost(&t));
-        &QUADRANGLE[usize::from(costs[1] < costs[0])]
+        let first = cost(&QUADRANGLE[0], f64::INFINITY);
+        &QUADRANGLE[usize::from(cost(&QUADRANGLE[1], first) < first)]
     } else {
         let mut best = (0, f64::INFINITY);
         for (i, triangles) in HEXAGON.iter().enumerate() {
-            let c = cost(triangles);
+            let c = cost(triangles, best.1);
             if c < best.1 {
                 best = (i, c);
             }

@@ -23,45 +23,33 @@ pub(crate) fn gather<T: Copy, const BELOW: usize, const ABOVE: usize>(
     missing: T,
     halo: &mut Halo<T>,
 ) {
-    let split = |c: i32| {
-        if c < 0 {
-            (0, c + 8)
-        } else if c > 7 {
-            (2, c - 8)
-        } else {
-            (1, c)
-        }
-    };
-    let range = -(BELOW as i32)..8 + ABOVE as i32;
-    for z in range.clone() {
-        let (block_z, local_z) = split(z);
-        for y in range.clone() {
-            let (block_y, local_y) = split(y);
-            let code = 3 * block_y + 9 * block_z;
-            let row = (local_y * 8 + local_z * 64) as usize;
-            let to = halo_index(0, y, z);
-            let west = neighbors[code];
-            if west == NONE {
-                halo[to - BELOW..to].fill(missing);
-            } else {
-                let from = west as usize * 512 + row + 8;
-                halo[to - BELOW..to].copy_from_slice(&values[from - BELOW..from]);
-            }
-            let own = neighbors[code + 1];
-            if own == NONE {
-                halo[to..to + 8].fill(missing);
-            } else {
-                let from = own as usize * 512 + row;
-                halo[to..to + 8].copy_from_slice(&values[from..from + 8]);
-            }
-            let east = neighbors[code + 2];
-            if east == NONE {
-                halo[to + 8..to + 8 + ABOVE].fill(missing);
-            } else {
-                let from = east as usize * 512 + row;
-                halo[to + 8..to + 8 + ABOVE].copy_from_slice(&values[from..from + ABOVE]);
+    // Where a block behind, the block itself and the one ahead begin in the buffer, and which of their layers are copied.
+    let parts = [(-8, 8 - BELOW..8), (0, 0..8), (8, 0..ABOVE)];
+    for (code, sides) in neighbors.chunks_exact(3).enumerate() {
+        let ((y, rows), (z, slabs)) = (&parts[code % 3], &parts[code / 3]);
+        let block = |side: usize| {
+            let first = sides[side] as usize * 512;
+            (sides[side] != NONE).then(|| &values[first..first + 512])
+        };
+        let (west, own, east) = (block(0), block(1), block(2));
+        for local_z in slabs.clone() {
+            for local_y in rows.clone() {
+                let from = local_y * 8 + local_z * 64;
+                let to = halo_index(0, y + local_y as i32, z + local_z as i32);
+                let target = &mut halo[to - 4..to + 12];
+                copy_or_fill(&mut target[4 - BELOW..4], west.map(|w| &w[from + 8 - BELOW..from + 8]), missing);
+                copy_or_fill(&mut target[4..12], own.map(|o| &o[from..from + 8]), missing);
+                copy_or_fill(&mut target[12..12 + ABOVE], east.map(|e| &e[from..from + ABOVE]), missing);
             }
         }
+    }
+}
+
+#[inline(always)]
+fn copy_or_fill<T: Copy>(target: &mut [T], source: Option<&[T]>, missing: T) {
+    match source {
+        Some(source) => target.copy_from_slice(source),
+        None => target.fill(missing),
     }
 }
 

@@ -408,7 +408,7 @@ impl Cascade<'_> {
             }
             last = quotient;
             let scale = rescale_and_residual(level, &mut f, &mut r, &mut q, norm / energy);
-            let solver_steps = conjugate_gradients(level, &mut f, &mut r, &mut p, &mut q, scale, SOLVE);
+            let solver_steps = conjugate_gradients(level, &mut f, &mut r, [&mut p, &mut q, &mut s], scale, SOLVE);
             iterations.push(Iteration { gradient: level.gradient, rayleigh_quotient: quotient, solver_steps });
         }
         let report = LevelReport {

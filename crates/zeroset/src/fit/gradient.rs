@@ -6,6 +6,8 @@
 //! levels, which decide on inside and outside, use the element's, and later ones the recovered one, unless the body is
 //! thin-walled. Both are linear in F, so N is convex and homogeneous with either.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use super::level::{Gradient, Level};
@@ -16,42 +18,59 @@ use crate::domain::{Halo, NONE, TETRAHEDRA, gather, halo_index, mask_row, neighb
 
 /// Nodes 0..=8 along each axis: those that the samples of one block reach.
 const REACH: usize = 9 * 9 * 9;
+/// Of these the nodes that belong to the blocks after it.
+const RIM: usize = REACH - 512;
 
-/// What one block's samples give to the nodes they reach, x + 9 y + 81 z: the vector sum of w b n of the recovered gradients, and the
-/// finished right-hand side of the element gradients.
-type Splat = [[f32; 4]; REACH];
+/// What one block's samples give to the nodes they reach, x + 9 y + 81 z: the vector sum of w b n of the recovered gradients by
+/// component, or the finished right-hand side of the element gradients as the last one.
+type Splat = [[f32; REACH]; 4];
+
+/// The components of a [`Splat`] that a gradient fills.
+fn components(gradient: Gradient) -> Range<usize> {
+    match gradient {
+        Gradient::Element => 3..4,
+        Gradient::Recovered => 0..3,
+    }
+}
+
+/// Place in a block's rim of a node of which a coordinate is 8.
+#[inline(always)]
+fn rim_index(x: usize, y: usize, z: usize) -> usize {
+    match (y, z) {
+        (_, 8) => x + 9 * y,
+        (8, _) => 81 + x + 9 * z,
+        _ => 153 + y + 8 * z,
+    }
+}
 
 /// Freezes n_i = g_i / |g_i| and sums w_i n_i to the nodes; returns N(F) = sum w |g| + gamma sum t F.
 ///
-/// `vectors` receives the three components; `rhs` the right-hand side div(sum w n delta) + gamma t at the free nodes.
-/// Both in a fixed order.
-pub(super) fn linearise(level: &Level, f: &[f32], vectors: [&mut [f32]; 3], rhs: &mut [f32]) -> f64 {
-    let blocks = &level.blocks;
-    let (splats, partial): (Vec<Box<Splat>>, Vec<f64>) = (0..level.cells.block_keys.len())
-        .into_par_iter()
+/// `vectors` is scratch for the three components; `rhs` receives the right-hand side div(sum w n delta) + gamma t at the free
+/// nodes. Both in a fixed order: a block's own samples, then those of the seven blocks before it.
+pub(super) fn linearise(level: &Level, f: &[f32], mut vectors: [&mut [f32]; 3], rhs: &mut [f32]) -> f64 {
+    let (rims, partial): (Vec<Box<[f32]>>, Vec<f64>) = by_block(&mut vectors, rhs)
+        .enumerate()
         .with_min_len(8)
         .map_init(
-            || [0.0_f32; 2304],
-            |halo, d| {
-                let b = blocks.keys.binary_search(&level.cells.block_keys[d]).expect("a block of data is stored");
-                gather::<f32, 1, 2>(f, &blocks.neighbors[b], 0.0, halo);
-                let mut splat = Box::new([[0.0; 4]; REACH]);
-                let sum = splat_block(halo, &level.samples.of_block[d], level.gradient, &mut splat);
-                (splat, sum)
-            },
+            || ([0.0; 2304], [[0.0; REACH]; 4]),
+            |(halo, splat), (b, out)| own_samples(level, b, f, halo, splat, out),
         )
         .unzip();
     let data = partial.into_iter().sum::<f64>();
-    let [vx, vy, vz] = vectors;
-    vx.par_chunks_exact_mut(512)
-        .zip(vy.par_chunks_exact_mut(512))
-        .zip(vz.par_chunks_exact_mut(512).zip(rhs.par_chunks_exact_mut(512)))
-        .enumerate()
-        .with_min_len(16)
-        .for_each(|(b, ((vx, vy), (vz, rhs)))| join_splats(level, b, &splats, [vx, vy, vz, rhs]));
-    drop(splats);
-    let told = right_hand_side(level, f, [vx, vy, vz], rhs);
-    data + told
+    by_block(&mut vectors, rhs).enumerate().with_min_len(16).for_each(|(b, out)| add_rims(level, b, &rims, out));
+    drop(rims);
+    data + right_hand_side(level, f, vectors.map(|v| &*v), rhs)
+}
+
+/// The three components and the right-hand side of each block.
+fn by_block<'a>(
+    [x, y, z]: &'a mut [&mut [f32]; 3],
+    rhs: &'a mut [f32],
+) -> impl IndexedParallelIterator<Item = [&'a mut [f32]; 4]> {
+    x.par_chunks_exact_mut(512)
+        .zip(y.par_chunks_exact_mut(512))
+        .zip(z.par_chunks_exact_mut(512).zip(rhs.par_chunks_exact_mut(512)))
+        .map(|((x, y), (z, rhs))| [x, y, z, rhs])
 }
 
 /// The gradient at a sample, in cells.
@@ -107,14 +126,14 @@ fn splat_block(halo: &Halo<f32>, samples: &[Sample], gradient: Gradient, splat: 
         match gradient {
             Gradient::Element => {
                 for (s, axis) in tetrahedron.axes.into_iter().enumerate() {
-                    splat[nodes[s + 1]][3] += n[axis];
-                    splat[nodes[s]][3] -= n[axis];
+                    splat[3][nodes[s + 1]] += n[axis];
+                    splat[3][nodes[s]] -= n[axis];
                 }
             }
             Gradient::Recovered => {
                 for (node, weight) in nodes.into_iter().zip(sample.barycentric) {
                     for axis in 0..3 {
-                        splat[node][axis] += weight * n[axis];
+                        splat[axis][node] += weight * n[axis];
                     }
                 }
             }
@@ -123,24 +142,56 @@ fn splat_block(halo: &Halo<f32>, samples: &[Sample], gradient: Gradient, splat: 
     sum
 }
 
-/// The vectors at the nodes of block `b`: its own splat and the last layers of the seven blocks before it.
-fn join_splats(level: &Level, b: usize, splats: &[Box<Splat>], mut out: [&mut [f32]; 4]) {
-    out.iter_mut().for_each(|component| component.fill(0.0));
-    for before in 0..8_usize {
+/// Gives block `b` what its own samples bear; returns what they give to the blocks after it, and sum w |g|.
+fn own_samples(
+    level: &Level,
+    b: usize,
+    f: &[f32],
+    halo: &mut Halo<f32>,
+    splat: &mut Splat,
+    mut out: [&mut [f32]; 4],
+) -> (Box<[f32]>, f64) {
+    let components = components(level.gradient);
+    let d = level.data_block[b];
+    if d == NONE {
+        out.iter_mut().for_each(|component| component.fill(0.0));
+        return (Box::default(), 0.0);
+    }
+    gather::<f32, 1, 2>(f, &level.blocks.neighbors[b], 0.0, halo);
+    splat[components.clone()].fill([0.0; REACH]);
+    let sum = splat_block(halo, &level.samples.of_block[d as usize], level.gradient, splat);
+    out[3].fill(0.0);
+    let mut rim = vec![0.0; components.len() * RIM].into_boxed_slice();
+    for (c, rim) in components.zip(rim.chunks_exact_mut(RIM)) {
+        for (row, own) in out[c].chunks_exact_mut(8).enumerate() {
+            let from = 9 * (row & 7) + 81 * (row >> 3);
+            own.copy_from_slice(&splat[c][from..from + 8]);
+        }
+        for i in 0..9 {
+            for j in 0..9 {
+                rim[rim_index(i, j, 8)] = splat[c][i + 9 * j + 81 * 8];
+                rim[rim_index(i, 8, j)] = splat[c][i + 9 * 8 + 81 * j];
+                rim[rim_index(8, i, j)] = splat[c][8 + 9 * i + 81 * j];
+            }
+        }
+    }
+    (rim, sum)
+}
+
+/// Adds to block `b` what the samples of the seven blocks before it give to its first layers.
+fn add_rims(level: &Level, b: usize, rims: &[Box<[f32]>], out: [&mut [f32]; 4]) {
+    for before in 1..8_usize {
         let step: [i32; 3] = std::array::from_fn(|a| -((before >> a & 1) as i32));
         let other = level.blocks.neighbors[b][neighbor_code(step)];
-        if other == NONE || level.data_block[other as usize] == NONE {
+        if other == NONE {
             continue;
         }
-        let splat = &splats[level.data_block[other as usize] as usize];
         let range = |a: usize| if before >> a & 1 == 1 { 8..9 } else { 0..8 };
-        for z in range(2) {
-            for y in range(1) {
-                for x in range(0) {
-                    let v = splat[x + 9 * y + 81 * z];
-                    let node = (x & 7) + 8 * (y & 7) + 64 * (z & 7);
-                    for (component, value) in out.iter_mut().zip(v) {
-                        component[node] += value;
+        for (c, rim) in components(level.gradient).zip(rims[other as usize].chunks_exact(RIM)) {
+            for z in range(2) {
+                for y in range(1) {
+                    for x in range(0) {
+                        out[c][(x & 7) + 8 * (y & 7) + 64 * (z & 7)] += rim[rim_index(x, y, z)];
                     }
                 }
             }
@@ -161,7 +212,9 @@ fn right_hand_side(level: &Level, f: &[f32], vectors: [&[f32]; 3], rhs: &mut [f3
                 let free = &level.free[b];
                 let neighbors = &level.blocks.neighbors[b];
                 if neighbors.iter().any(|&n| n != NONE && level.data_block[n as usize] != NONE) {
-                    add_differences(vectors, neighbors, halo, rhs);
+                    if level.gradient == Gradient::Recovered {
+                        add_differences(vectors, neighbors, halo, rhs);
+                    }
                     for row in 0..64 {
                         let lanes = &LANES[mask_row(free, row & 7, row >> 3) as usize];
                         for k in 0..8 {

@@ -69,6 +69,18 @@ pub(super) fn row_at<T: Copy>(halo: &Halo<T>, at: usize) -> &[T; 8] {
     halo[at..at + 8].try_into().expect("eight values")
 }
 
+/// The rows of eight values of a block.
+#[inline(always)]
+pub(super) fn rows<T>(block: &[T]) -> &[[T; 8]; 64] {
+    block.as_chunks().0.try_into().expect("64 rows")
+}
+
+/// The rows of eight values of a block.
+#[inline(always)]
+pub(super) fn rows_mut<T>(block: &mut [T]) -> &mut [[T; 8]; 64] {
+    block.as_chunks_mut().0.try_into().expect("64 rows")
+}
+
 #[inline(always)]
 fn stencil_product<T: Real>(halo: &Halo<T>, at: usize, row: &StencilRow) -> [T; 8] {
     let mut sum = [T::default(); 8];
@@ -167,7 +179,7 @@ fn laplacian<T: Real>(halo: &Halo<T>, at: usize) -> [T; 8] {
 
 /// The diagonal of A on a row: for Jacobi's preconditioner.
 #[inline(always)]
-pub(super) fn diagonal(level: &Level, b: usize, row: usize, stencil: Option<&StencilRow>) -> [f32; 8] {
+fn diagonal(level: &Level, b: usize, row: usize, stencil: Option<&StencilRow>) -> [f32; 8] {
     let mut diagonal = [6.0; 8];
     if let Some(coefficients) = stencil {
         for k in 0..8 {
@@ -184,9 +196,9 @@ pub(super) fn diagonal(level: &Level, b: usize, row: usize, stencil: Option<&Ste
     diagonal
 }
 
-/// Calls `row(row, inverse diagonal)` for each row of block `b` that has free nodes.
+/// Calls `visit(row, diagonal of A)` for each row of block `b` that has free nodes.
 #[inline(always)]
-pub(super) fn for_each_free_row(level: &Level, b: usize, mut visit: impl FnMut(usize, u8, [f32; 8])) {
+pub(super) fn for_each_diagonal(level: &Level, b: usize, mut visit: impl FnMut(usize, [f32; 8])) {
     let free = &level.free[b];
     if *free == [0; 8] {
         return;
@@ -194,9 +206,8 @@ pub(super) fn for_each_free_row(level: &Level, b: usize, mut visit: impl FnMut(u
     let mut stencil = StencilCursor::new(level, b);
     for row in 0..64 {
         let coefficients = stencil.next(row);
-        let bits = mask_row(free, row & 7, row >> 3);
-        if bits != 0 {
-            visit(row, bits, diagonal(level, b, row, coefficients).map(|d| 1.0 / d));
+        if mask_row(free, row & 7, row >> 3) != 0 {
+            visit(row, diagonal(level, b, row, coefficients));
         }
     }
 }

@@ -29,13 +29,13 @@ fn boundary_values(level: &Level, faces: FixedFaces) -> Vec<f64> {
 /// The seed on a dense level.
 pub(super) fn boundary_potential(level: &Level, faces: FixedFaces) -> Vec<f32> {
     let mut f = boundary_values(level, faces);
-    let (mut r, mut p, mut q) = (vec![0.0; f.len()], vec![0.0; f.len()], vec![0.0; f.len()]);
+    let [mut r, mut p, mut q, mut s] = std::array::from_fn(|_| vec![0.0; f.len()]);
     apply(level, &f, &mut q);
     for (r, q) in r.iter_mut().zip(&q) {
         *r = -q;
     }
     let scale = r.iter().map(|r| r * r).sum::<f64>().sqrt();
     let params = SolveParams { tolerance: 1e-8, max_steps: 1000 };
-    conjugate_gradients(level, &mut f, &mut r, &mut p, &mut q, scale, params);
+    conjugate_gradients(level, &mut f, &mut r, [&mut p, &mut q, &mut s], scale, params);
     f.into_iter().map(|v| v as f32).collect()
 }

@@ -318,9 +318,10 @@ fn conjugate_gradients_lower_the_quadratic_and_reach_the_residual() {
         let scale = rhs.iter().map(|r| r * r).sum::<f64>().sqrt();
         let solve = |max_steps: usize| {
             let n = rhs.len();
-            let (mut f, mut r, mut p, mut q) = (vec![0.0; n], rhs.clone(), vec![0.0; n], vec![0.0; n]);
+            let [mut f, mut p, mut q, mut s] = std::array::from_fn(|_| vec![0.0; n]);
+            let mut r = rhs.clone();
             let params = SolveParams { tolerance: 1e-8, max_steps };
-            let steps = conjugate_gradients(&level, &mut f, &mut r, &mut p, &mut q, scale, params);
+            let steps = conjugate_gradients(&level, &mut f, &mut r, [&mut p, &mut q, &mut s], scale, params);
             apply(&level, &f, &mut q);
             let residual = q.iter().zip(&rhs).map(|(q, b)| (b - q).powi(2)).sum::<f64>().sqrt();
             let quadratic = f.iter().zip(q.iter().zip(&rhs)).map(|(f, (q, b))| f * (0.5 * q - b)).sum::<f64>();

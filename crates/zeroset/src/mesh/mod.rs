@@ -1,6 +1,7 @@
 //! Triangle meshes, and what can be measured on them.
 
 mod compare;
+mod components;
 mod creases;
 mod edges;
 mod topology;
@@ -9,6 +10,7 @@ mod topology;
 mod tests;
 
 pub use compare::{Agreement, CompareError, CompareParams, CompareReport, Distances, OneWay, Role, compare};
+pub use components::{DroppedComponents, drop_small_components};
 pub use creases::{SHARP_ANGLE, creases};
 pub use topology::{Component, Topology, topology};
 

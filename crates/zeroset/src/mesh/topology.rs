@@ -101,14 +101,14 @@ pub struct Topology {
 }
 
 /// Groups of numbers that are merged step by step; a group's root is its lowest number.
-struct Groups(Vec<u32>);
+pub(super) struct Groups(Vec<u32>);
 
 impl Groups {
-    fn new(count: usize) -> Self {
+    pub(super) fn new(count: usize) -> Self {
         Self((0..count as u32).collect())
     }
 
-    fn root(&mut self, mut of: u32) -> u32 {
+    pub(super) fn root(&mut self, mut of: u32) -> u32 {
         while self.0[of as usize] != of {
             let above = self.0[self.0[of as usize] as usize];
             self.0[of as usize] = above;
@@ -117,7 +117,7 @@ impl Groups {
         of
     }
 
-    fn merge(&mut self, a: u32, b: u32) {
+    pub(super) fn merge(&mut self, a: u32, b: u32) {
         let (a, b) = (self.root(a), self.root(b));
         self.0[a.max(b) as usize] = a.min(b);
     }

@@ -1,26 +1,44 @@
 //! Values of the nearest points for the vertices of the mesh.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use super::AttributeChoice;
 use crate::cloud::{Attributes, Cloud};
 use crate::mesh::Mesh;
+use crate::monitor::{Cancelled, Monitor, Steps};
 use crate::spatial::PointTree;
 
-/// Gives each vertex the chosen values of the point nearest to it.
-pub(super) fn transfer(cloud: &Cloud, mesh: &mut Mesh, choice: AttributeChoice) {
+/// Vertices between two looks at the monitor.
+const CHUNK: usize = 1 << 14;
+
+/// Gives each vertex the chosen values of the point nearest to it. `shares` is the part of the whole that this is.
+pub(super) fn transfer(
+    cloud: &Cloud,
+    mesh: &mut Mesh,
+    choice: AttributeChoice,
+    monitor: &dyn Monitor,
+    shares: Range<f64>,
+) -> Result<(), Cancelled> {
     let from = &cloud.attributes;
     let wanted = match choice {
-        AttributeChoice::Off => return,
+        AttributeChoice::Off => return Ok(()),
         AttributeChoice::Rgb => from.colors.is_some(),
         AttributeChoice::Intensity => from.intensities.is_some(),
         AttributeChoice::Class => from.classes.is_some(),
     };
     if !wanted {
-        return;
+        return Ok(());
     }
     let tree = PointTree::new(&cloud.points);
-    let nearest: Vec<u32> = mesh.vertices.par_iter().map(|v| tree.nearest(*v).map_or(0, |n| n.index as u32)).collect();
+    let steps = Steps::new(monitor, shares, mesh.vertices.len());
+    let nearest = mesh.vertices.par_chunks(CHUNK).map(|vertices| {
+        let index = |v: &[f64; 3]| tree.nearest(*v).map_or(0, |n| n.index as u32);
+        let indices: Vec<u32> = vertices.iter().map(index).collect();
+        steps.advance(vertices.len()).map(|()| indices)
+    });
+    let nearest = nearest.collect::<Result<Vec<_>, _>>()?.concat();
     mesh.attributes = Attributes {
         colors: from.colors.as_ref().filter(|_| choice == AttributeChoice::Rgb).map(|values| pick(values, &nearest)),
         intensities: from
@@ -34,6 +52,7 @@ pub(super) fn transfer(cloud: &Cloud, mesh: &mut Mesh, choice: AttributeChoice) 
             .filter(|_| choice == AttributeChoice::Class)
             .map(|values| pick(values, &nearest)),
     };
+    Ok(())
 }
 
 fn pick<T: Copy + Send + Sync>(values: &[T], indices: &[u32]) -> Vec<T> {

@@ -68,7 +68,8 @@ const TURN: ([f64; 3], f64) = ([1.0, 2.0, 3.0], 25.0);
 
 impl Frame {
     pub(super) fn new(up: Up, scene: Scene) -> Self {
-        let upright = Matrix3::from_columns(&[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|e| up.upright(e).into()));
+        let upright =
+            Matrix3::from_columns(&[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|e| up.upright(e).into()));
         Self(match scene {
             Scene::Terrain | Scene::Airborne => upright,
             Scene::Object | Scene::Free => {

@@ -96,9 +96,13 @@ const NOISE_REL: f64 = 0.25;
 const SCREENING: [f64; 2] = [1.0, 16.0];
 /// Fewer points never make a surface.
 const LEAST_POINTS: usize = 8;
-/// Peak bytes of a whole run for each occupied cell of the finest level, and for each point; measured on airborne clouds.
-const BYTES_A_CELL: f64 = 2600.0;
-const BYTES_A_POINT: f64 = 90.0;
+/// Peak bytes of a whole run for each cell of the finest level that the surface crosses, and for each point.
+///
+/// Measured is the peak resident set of `zeroset reconstruct` on two threads. The points alone (3 M, cells of 5 spacings) take
+/// 102 bytes each, with the few cells that they then fill. Cells beyond that take 550 (torus), 700 (city) and 745 bytes
+/// (airborne city, 1 M points); much noise fills more cells than there is surface, and each takes less.
+const BYTES_A_CELL: f64 = 750.0;
+const BYTES_A_POINT: f64 = 110.0;
 /// A box wider than this many spacings holds stray points: 10^9 points would not fill its diagonal plane.
 const ASTRAY: f64 = 1e6;
 
@@ -121,8 +125,8 @@ pub struct PlanReport {
     pub up: Up,
     /// Spacing of the finest lattice.
     pub resolution: f64,
-    /// Whether memory made the automatic resolution coarser than the spacing asks for.
-    pub capped_by_memory: bool,
+    /// What the resolution would have been without the limit of memory; `None` if that changed nothing.
+    pub wanted_resolution: Option<f64>,
     /// Number of levels.
     pub levels: u32,
     /// Cells of the finest level that hold points.
@@ -166,7 +170,8 @@ pub fn plan<'a>(
     }
     let upright: Vec<[f64; 3]> = cloud.points.iter().map(|&p| params.up.upright(p)).collect();
     let tree = PointTree::new(&cloud.points);
-    let spacing = Spacing::with_tree(cloud, &tree).ok_or(ReconstructError::Degenerate { shape: "in one place" })?.median;
+    let spacing =
+        Spacing::with_tree(cloud, &tree).ok_or(ReconstructError::Degenerate { shape: "in one place" })?.median;
     let noise = noise(cloud, &tree).unwrap_or(0.0);
     drop(tree);
     let (low, high) = bounds(&cloud.points);
@@ -249,7 +254,7 @@ pub fn plan<'a>(
         scene_reason,
         up: params.up,
         resolution,
-        capped_by_memory: resolution > wanted,
+        wanted_resolution: (resolution > wanted).then_some(wanted),
         levels: prepared.levels(),
         occupied_cells,
         expected_nodes: 14 * cells as u64,
@@ -294,4 +299,29 @@ fn on_one_line(points: &[[f64; 3]]) -> bool {
     let mut eigenvalues: Vec<f64> = covariance.symmetric_eigenvalues().iter().copied().collect();
     eigenvalues.sort_by(f64::total_cmp);
     eigenvalues[1] <= 1e-12 * eigenvalues[2]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sample::{Scene as Sample, SceneKind};
+
+    #[test]
+    fn a_limit_of_memory_makes_the_resolution_coarser_and_says_what_it_would_have_been() {
+        let cloud = Sample::new(SceneKind::Torus, 1).points(20_000, 0.001, 1);
+        let planned =
+            |memory| plan(&cloud, &ReconstructParams { memory, ..ReconstructParams::default() }, &()).unwrap().report;
+        let (free, capped) = (planned(16 << 30), planned(10_000_000));
+        assert_eq!(free.wanted_resolution, None);
+        assert_eq!(capped.wanted_resolution, Some(free.resolution));
+        assert!(capped.resolution > free.resolution && capped.expected_bytes <= 10_000_000);
+    }
+
+    #[test]
+    fn screening_falls_with_the_square_of_the_noise_between_its_bounds() {
+        assert_eq!(screening_for(0.25, 1.0), FitParams::SCREENING);
+        assert_eq!(screening_for(0.5, 2.0), FitParams::SCREENING);
+        assert!((screening_for(0.2, 1.0) - 6.25).abs() < 1e-12);
+        assert_eq!((screening_for(0.0, 1.0), screening_for(3.0, 1.0)), (16.0, 1.0));
+    }
 }

@@ -1,5 +1,6 @@
 //! Fit, extract, trim, finish.
 
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Instant;
 
 use rayon::prelude::*;
@@ -12,7 +13,7 @@ use crate::cloud::Cloud;
 use crate::contour::{ColumnOutline, ContourReport, contour};
 use crate::fit::{FitReport, Scene};
 use crate::mesh::Mesh;
-use crate::monitor::{Monitor, check};
+use crate::monitor::{Monitor, Steps, check};
 use crate::spatial::PointTree;
 
 /// Wall seconds of each stage.
@@ -61,10 +62,11 @@ impl Plan<'_> {
         let frame = Frame::new(plan.up, plan.scene);
         monitor.stage("extracting the surface");
         let start = Instant::now();
-        let (mut mesh, contour) = match Keep::new(cloud, &plan, frame) {
-            None => contour(&field, |_| true),
-            Some(keep) => contour(&field, |p| keep.contains(p)),
-        };
+        let keep = Keep::new(cloud, &plan, frame);
+        check(monitor)?;
+        let watch = Watch::new(monitor, plan.occupied_cells);
+        let (mut mesh, contour) =
+            contour(&field, |p| watch.goes_on() && keep.as_ref().is_none_or(|keep| keep.contains(p)));
         drop(field);
         check(monitor)?;
         if mesh.triangles.is_empty() {
@@ -76,14 +78,46 @@ impl Plan<'_> {
         seconds.contour = start.elapsed().as_secs_f64();
 
         monitor.stage("carrying values over");
-        monitor.share(0.97);
         let start = Instant::now();
-        transfer(cloud, &mut mesh, plan.attributes);
+        transfer(cloud, &mut mesh, plan.attributes, monitor, AFTER_CONTOUR..1.0)?;
         seconds.attributes = start.elapsed().as_secs_f64();
         monitor.share(1.0);
 
         let (vertices, triangles) = (mesh.vertices.len(), mesh.triangles.len());
         Ok((mesh, ReconstructReport { plan, fit, contour, vertices, triangles, seconds }))
+    }
+}
+
+/// The shares of the whole that are done before and after the extraction; the fit ends at the first.
+const AFTER_FIT: f64 = 0.9;
+const AFTER_CONTOUR: f64 = 0.97;
+
+/// Counts the polygons of the extraction for a monitor.
+struct Watch<'a> {
+    steps: Steps<'a>,
+    polygons: AtomicUsize,
+    cancelled: AtomicBool,
+}
+
+impl<'a> Watch<'a> {
+    /// Polygons between two looks at the monitor.
+    const STRIDE: usize = 1 << 14;
+    /// Polygons for each occupied cell, about: one for each lattice edge that the surface crosses.
+    const POLYGONS_A_CELL: usize = 5;
+
+    fn new(monitor: &'a dyn Monitor, occupied_cells: usize) -> Self {
+        let steps = Steps::new(monitor, AFTER_FIT..AFTER_CONTOUR, Self::POLYGONS_A_CELL * occupied_cells);
+        Self { steps, polygons: AtomicUsize::new(0), cancelled: AtomicBool::new(false) }
+    }
+
+    /// Counts a polygon. Once this is `false` the mesh is not wanted any more, and emptying it ends the work soonest.
+    fn goes_on(&self) -> bool {
+        if self.polygons.fetch_add(1, Ordering::Relaxed) % Self::STRIDE == Self::STRIDE - 1
+            && self.steps.advance(Self::STRIDE).is_err()
+        {
+            self.cancelled.store(true, Ordering::Relaxed);
+        }
+        !self.cancelled.load(Ordering::Relaxed)
     }
 }
 

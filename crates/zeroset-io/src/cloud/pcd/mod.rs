@@ -92,8 +92,9 @@ struct Layout {
 impl Layout {
     fn of(path: &Path, header: &Header) -> Result<Self, IoError> {
         let find = |names: &[&str]| {
-            let index =
-                header.fields.iter().position(|field| names.iter().any(|n| field.name.eq_ignore_ascii_case(n)))?;
+            // The first name that is there wins: `i` may be a number of the point where `intensity` is the intensity.
+            let place = |name: &&str| header.fields.iter().position(|field| field.name.eq_ignore_ascii_case(name));
+            let index = names.iter().find_map(place)?;
             let before = &header.fields[..index];
             let field = &header.fields[index];
             Some(Place {
@@ -183,6 +184,10 @@ fn read_ascii(path: &Path, header: &Header, layout: &Layout, body: &[u8]) -> Res
         if let (Some(classes), Some(place)) = (&mut classes, &layout.class) {
             classes.push(class_from_value(value(place)?));
         }
+    }
+    if tokens.next().is_some() {
+        let what = format!("the PCD text has more values than {points} points of {width} take");
+        return Err(IoError::damaged(path, what));
     }
     columns.attributes = Attributes { colors, intensities, classes };
     Ok(columns)

@@ -21,12 +21,40 @@ pub(super) struct Layout {
     pub(super) color: Option<[usize; 3]>,
     pub(super) intensity: Option<usize>,
     pub(super) class: Option<usize>,
+    /// The only byte between fields, where the header tells; then fields may hold spaces, or nothing.
+    pub(super) separator: Option<u8>,
+}
+
+/// A header line: the names of all columns, and what stands between them if that is not just space.
+#[derive(Debug)]
+struct Names {
+    names: Vec<String>,
+    separator: Option<u8>,
+}
+
+impl Names {
+    fn of(line: &[u8]) -> Self {
+        let doubled_tabs = line.windows(2).any(|pair| pair == b"\t\t");
+        let separator = [b',', b';', b'\t'].into_iter().find(|mark| line.contains(mark));
+        let separator = separator.filter(|mark| *mark != b'\t' || !doubled_tabs);
+        let mut names: Vec<String> = Tokens::new(line, separator).take(MOST_COLUMNS).map(name_of).collect();
+        if separator.is_none() {
+            // What stands in brackets after a space is a unit, not a column.
+            names.retain(|name| !name.is_empty());
+        }
+        Self { names, separator }
+    }
+
+    fn layout(&self) -> Option<Layout> {
+        Some(Layout { separator: self.separator, ..Layout::from_names(&self.names)? })
+    }
 }
 
 impl Layout {
-    /// By names, if they tell where x, y and z are.
+    /// By names, if they tell where x, y and z are. Of several names for one thing the first in the list wins: a column
+    /// `n` beside `y` is a number of something.
     fn from_names(names: &[String]) -> Option<Self> {
-        let find = |wanted: &[&str]| names.iter().position(|name| wanted.contains(&name.as_str()));
+        let find = |wanted: &[&str]| wanted.iter().find_map(|wanted| names.iter().position(|name| name == wanted));
         let three = |x: &[&str], y: &[&str], z: &[&str]| Some([find(x)?, find(y)?, find(z)?]);
         let position = three(
             &["x", "easting", "east", "e"],
@@ -38,17 +66,30 @@ impl Layout {
             color: three(&["red", "r"], &["green", "g"], &["blue", "b"]),
             intensity: find(&["intensity", "scalar_intensity", "i", "reflectance", "scalar_reflectance"]),
             class: find(&["classification", "scalar_classification", "class", "label"]),
+            separator: None,
         })
     }
 
     fn by_convention(convention: Convention, columns: usize) -> Self {
-        let plain = Self { position: [0, 1, 2], color: None, intensity: None, class: None };
+        let plain = Self { position: [0, 1, 2], color: None, intensity: None, class: None, separator: None };
         match (convention, columns) {
             (Convention::Pts, 4 | 5) => Self { intensity: Some(3), ..plain },
             (Convention::Pts, 6) => Self { color: Some([3, 4, 5]), ..plain },
             (Convention::Pts, 7..) => Self { intensity: Some(3), color: Some([4, 5, 6]), ..plain },
             _ => plain,
         }
+    }
+
+    /// This, if the fields of a line are split as the header's are; else with any separators.
+    fn split_as(self, line: &[u8]) -> Self {
+        let separator = self.separator.filter(|mark| line.contains(mark));
+        Self { separator, ..self }
+    }
+
+    /// Whether a line has numbers where the position is.
+    fn is_point(&self, line: &[u8]) -> bool {
+        let tokens: Vec<&[u8]> = Tokens::new(line, self.separator).take(MOST_COLUMNS).collect();
+        self.position.iter().all(|at| tokens.get(*at).is_some_and(|token| is_number(token)))
     }
 
     /// How many columns a line must have.
@@ -75,48 +116,46 @@ pub(super) struct Prelude {
 
 /// Lines of words at the start that may belong to a header; after more than this the file is something else.
 const MOST_HEADER_LINES: u64 = 64;
+/// Columns beyond this have no names.
+const MOST_COLUMNS: usize = 256;
 
 impl Prelude {
     pub(super) fn scan(path: &Path, text: &[u8], line_end: u8, convention: Convention) -> Result<Self, IoError> {
         let (mut skip, mut lines, mut declared, mut crs, mut notes) = (0, 0, None, None, Vec::new());
-        let (mut names, mut words): (Option<Vec<String>>, u64) = (None, 0);
+        let (mut named, mut words): (Option<Layout>, u64) = (None, 0);
         let mut first_words = None;
         while skip < text.len() {
             let rest = &text[skip..];
             let end = rest.iter().position(|b| *b == line_end);
-            let line = trimmed(&rest[..end.unwrap_or(rest.len())]);
-            let tokens: Vec<&[u8]> = Tokens::new(line).take(256).collect();
+            let whole = &rest[..end.unwrap_or(rest.len())];
+            let line = trimmed(whole);
+            let tokens: Vec<&[u8]> = Tokens::new(line, None).take(MOST_COLUMNS).collect();
+            let layout = named.clone().map(|layout| layout.split_as(whole));
             if line.is_empty() || is_comment(line) {
                 // A comment that names the columns is a header all the same.
                 let comment = uncommented(line);
                 if let Some(text) = comment.strip_prefix(b"crs ") {
                     crs = crs.or_else(|| Some(String::from_utf8_lossy(text).trim().to_string()));
                 }
-                let found = names_of(Tokens::new(comment).take(256));
-                if Layout::from_names(&found).is_some() {
-                    names = Some(found);
-                }
+                named = Names::of(comment).layout().or(named);
             } else if tokens.len() == 1 && declared.is_none() && is_count(tokens[0]) {
                 declared = parse_count(tokens[0]);
                 if convention == Convention::Plain {
                     notes.push(format!("line {} holds one number, taken as the count of points", lines + 1));
                 }
-            } else if starts_like_point(&tokens) {
-                return Self::at_first_point(
-                    path,
-                    &tokens,
-                    names,
-                    convention,
-                    Self { layout: Layout::by_convention(convention, tokens.len()), skip, lines, declared, crs, notes },
-                );
+            } else if starts_like_point(&tokens) || layout.as_ref().is_some_and(|layout| layout.is_point(whole)) {
+                let by_convention = Layout::by_convention(convention, tokens.len());
+                let columns =
+                    layout.as_ref().map_or(tokens.len(), |layout| Tokens::new(whole, layout.separator).count());
+                let unnamed = layout.is_none().then_some(first_words).flatten().map(|(line, _)| line);
+                let layout = layout.unwrap_or(by_convention);
+                let prelude = Self { layout, skip, lines, declared, crs, notes };
+                return prelude.at_first_point(path, columns, named.is_some(), unnamed, convention);
             } else {
                 // Words: a header, or no text of points at all.
                 words += 1;
                 first_words = first_words.or(Some((lines + 1, line)));
-                let found = names_of(tokens.iter().copied());
-                if Layout::from_names(&found).is_some() {
-                    names = Some(found);
-                }
+                named = Names::of(whole).layout().or(named);
                 if words > MOST_HEADER_LINES {
                     break;
                 }
@@ -130,7 +169,7 @@ impl Prelude {
         }
         match first_words {
             // Names of columns and nothing else: a sound file without points.
-            Some((line, words)) if names.is_none() => {
+            Some((line, words)) if named.is_none() => {
                 let shown = String::from_utf8_lossy(&words[..words.len().min(40)]).into_owned();
                 Err(IoError::malformed(
                     path,
@@ -142,35 +181,42 @@ impl Prelude {
         }
     }
 
+    /// The last checks, at a point of `columns` fields; `unnamed` is a line of words before it that names no x, y and z.
     fn at_first_point(
+        mut self,
         path: &Path,
-        tokens: &[&[u8]],
-        names: Option<Vec<String>>,
+        columns: usize,
+        named: bool,
+        unnamed: Option<u64>,
         convention: Convention,
-        mut prelude: Self,
     ) -> Result<Self, IoError> {
-        if tokens.len() < 3 {
-            return Err(Problem::Columns { line: 0, found: tokens.len(), needed: 3 }.at(path, prelude.lines));
+        let needed = self.layout.width().max(3);
+        if columns < needed {
+            return Err(Problem::Columns { line: 0, found: columns, needed }.at(path, self.lines));
         }
-        if let Some(layout) = names.as_deref().and_then(Layout::from_names) {
-            if layout.width() > tokens.len() {
-                let (found, needed) = (tokens.len(), layout.width());
-                return Err(Problem::Columns { line: 0, found, needed }.at(path, prelude.lines));
-            }
-            prelude.layout = layout;
-        } else if convention == Convention::Plain && tokens.len() > 3 {
-            prelude.notes.push(format!(
-                "{} columns after x y z were passed over; a header line such as `x y z red green blue` names them",
-                tokens.len() - 3
-            ));
+        if !named && convention == Convention::Plain && columns > 3 {
+            self.notes.push(match unnamed {
+                Some(line) => format!(
+                    "line {line} names no x, y and z, so the first three of {columns} columns were taken; a header line \
+                     such as `id x y z` tells"
+                ),
+                None => format!(
+                    "{} columns after x y z were passed over; a header line such as `x y z red green blue` names them",
+                    columns - 3
+                ),
+            });
         }
-        Ok(prelude)
+        Ok(self)
     }
 }
 
 /// A line of a point starts with a number; a decimal comma is a number too, and is told apart later.
 fn starts_like_point(tokens: &[&[u8]]) -> bool {
-    tokens.first().is_some_and(|token| fast_float2::parse::<f64, _>(token).is_ok())
+    tokens.first().is_some_and(|token| is_number(token))
+}
+
+fn is_number(token: &[u8]) -> bool {
+    fast_float2::parse::<f64, _>(token).is_ok()
 }
 
 /// A number of points: digits, perhaps with a sign, so that -1 is seen as the nonsense that it is.
@@ -192,12 +238,9 @@ fn uncommented(line: &[u8]) -> &[u8] {
     )
 }
 
-/// Names in lower case, without quotes and without a unit in brackets.
-fn names_of<'a>(tokens: impl Iterator<Item = &'a [u8]>) -> Vec<String> {
-    let name = |token: &[u8]| {
-        let text = String::from_utf8_lossy(token).to_ascii_lowercase();
-        let text = text.trim_matches(['"', '\'']);
-        text.split(['(', '[']).next().unwrap_or_default().trim().to_string()
-    };
-    tokens.map(name).filter(|name| !name.is_empty()).collect()
+/// A name in lower case, without quotes and without a unit in brackets.
+fn name_of(token: &[u8]) -> String {
+    let text = String::from_utf8_lossy(token).to_ascii_lowercase();
+    let text = text.trim_matches(['"', '\'']);
+    text.split(['(', '[']).next().unwrap_or_default().trim().to_string()
 }

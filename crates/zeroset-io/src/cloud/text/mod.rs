@@ -1,7 +1,8 @@
 //! Clouds as text, a point a line: XYZ, TXT, CSV, ASC and PTS.
 //!
 //! Values are separated by spaces, tabs, commas or semicolons, in any mixture. A header line names the columns if it
-//! is there, with or without a comment mark (`//X Y Z R G B`); without one the first three columns are x, y and z.
+//! is there, with or without a comment mark (`//X Y Z R G B`); without one the first three columns are x, y and z. Where
+//! the names stand between commas, semicolons or tabs, so do the values: then a field may hold spaces, or nothing.
 //! Only PTS has a convention for the rest: intensity, red, green, blue. Lines that are empty or start with `#`, `//` or
 //! `%` are passed over.
 
@@ -27,6 +28,9 @@ const PIECE: usize = 1 << 20;
 pub(crate) fn read(path: &Path, bytes: &[u8], convention: Convention) -> Result<Columns, IoError> {
     let name = if convention == Convention::Pts { "PTS text" } else { "XYZ text" };
     let text = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
+    if [b"\xFF\xFE", b"\xFE\xFF"].iter().any(|mark| text.starts_with(*mark)) {
+        return Err(IoError::malformed(path, "the text is UTF-16", "save it as UTF-8"));
+    }
     if text.iter().take(4096).any(|b| *b == 0) {
         return Err(IoError::WrongMagic { path: path.to_path_buf(), expected: name, looks: sniff(bytes) });
     }

@@ -67,18 +67,18 @@ pub(super) fn parse_block(
     let width = layout.width();
     let mut tokens: Vec<&[u8]> = Vec::with_capacity(width);
     let mut values = vec![0.0; width];
-    for (line, content) in piece.split(|b| *b == line_end).enumerate() {
-        let content = trimmed(content);
+    for (line, whole) in piece.split(|b| *b == line_end).enumerate() {
+        let content = trimmed(whole);
         if content.is_empty() || is_comment(content) {
             continue;
         }
-        if plain_numbers(content, &mut values) {
+        if layout.separator != Some(b'\t') && plain_numbers(content, &mut values) {
             block.push(layout, &values);
             continue;
         }
         let line = line as u64;
         tokens.clear();
-        tokens.extend(Tokens::new(content).take(width));
+        tokens.extend(Tokens::new(whole, layout.separator).take(width));
         if tokens.len() < width {
             if convention == Convention::Pts && tokens.len() == 1 && is_count(tokens[0]) {
                 block.counts.extend(parse_count(tokens[0]));
@@ -156,33 +156,58 @@ pub(super) fn is_comment(line: &[u8]) -> bool {
     line.starts_with(b"#") || line.starts_with(b"//") || line.starts_with(b"%")
 }
 
-/// Whether the first three fields between spaces or semicolons all look like `1,5`.
+/// Whether the first three fields between spaces or semicolons are numbers, one of them at least like `1,5`.
 fn has_decimal_commas(line: &[u8]) -> bool {
     if !line.contains(&b',') {
         return false;
     }
     let mut fields = line.split(|b| *b == b';' || b.is_ascii_whitespace()).filter(|field| !field.is_empty());
-    let mut with_comma = || {
-        fields.next().is_some_and(|field| {
-            let digits = |part: &[u8]| !part.is_empty() && part.iter().all(u8::is_ascii_digit);
-            let field = field.strip_prefix(b"-").unwrap_or(field);
-            let mut parts = field.split(|b| *b == b',');
-            matches!((parts.next(), parts.next(), parts.next()), (Some(a), Some(b), None) if digits(a) && digits(b))
-        })
-    };
-    with_comma() && with_comma() && with_comma()
+    let mut commas = 0;
+    for _ in 0..3 {
+        let Some(field) = fields.next() else { return false };
+        let field = field.strip_prefix(b"-").unwrap_or(field);
+        let mut parts = field.split(|b| *b == b',');
+        if !parts.all(|part| !part.is_empty() && part.iter().all(u8::is_ascii_digit)) {
+            return false;
+        }
+        match field.iter().filter(|b| **b == b',').count() {
+            0 => {}
+            1 => commas += 1,
+            _ => return false,
+        }
+    }
+    commas > 0
 }
 
-/// Fields of a line. Space around a comma or semicolon belongs to it; two of these in a row have an empty field between.
+/// Fields of a line.
+///
+/// With one separator, that alone stands between fields, unless it is quoted. Without, it is space, commas or semicolons
+/// in any mixture: space around a comma or semicolon belongs to it, and two of these in a row have an empty field between.
 pub(super) struct Tokens<'a> {
     rest: Option<&'a [u8]>,
+    separator: Option<u8>,
 }
 
 impl<'a> Tokens<'a> {
-    pub(super) fn new(line: &'a [u8]) -> Self {
-        let line = line.trim_ascii();
-        Self { rest: (!line.is_empty()).then_some(line) }
+    pub(super) fn new(line: &'a [u8], separator: Option<u8>) -> Self {
+        // A tab at the start has an empty field before it.
+        let line = if separator == Some(b'\t') { line } else { line.trim_ascii() };
+        Self { rest: (!line.is_empty()).then_some(line), separator }
     }
+
+    /// The next field up to the only separator.
+    fn split(&mut self, rest: &'a [u8], separator: u8) -> &'a [u8] {
+        let start = rest.len() - rest.trim_ascii_start().len();
+        let quoted = rest[start..].strip_prefix(b"\"").and_then(|inside| inside.iter().position(|b| *b == b'"'));
+        let from = quoted.map_or(0, |length| start + length + 2);
+        let end = rest[from..].iter().position(|b| *b == separator).map(|at| from + at);
+        self.rest = end.map(|end| &rest[end + 1..]);
+        rest[..end.unwrap_or(rest.len())].trim_ascii()
+    }
+}
+
+fn unquoted(token: &[u8]) -> &[u8] {
+    token.strip_prefix(b"\"").and_then(|token| token.strip_suffix(b"\"")).unwrap_or(token)
 }
 
 impl<'a> Iterator for Tokens<'a> {
@@ -190,6 +215,9 @@ impl<'a> Iterator for Tokens<'a> {
 
     fn next(&mut self) -> Option<&'a [u8]> {
         let rest = self.rest?;
+        if let Some(separator) = self.separator {
+            return Some(unquoted(self.split(rest, separator)));
+        }
         let separator = |b: &u8| matches!(b, b' ' | b'\t' | b',' | b';' | b'\r');
         let length = rest.iter().position(separator).unwrap_or(rest.len());
         let (token, after) = rest.split_at(length);
@@ -203,8 +231,7 @@ impl<'a> Iterator for Tokens<'a> {
         if self.rest.is_some_and(<[u8]>::is_empty) {
             self.rest = None;
         }
-        let quoted = token.strip_prefix(b"\"").and_then(|token| token.strip_suffix(b"\""));
-        Some(quoted.unwrap_or(token))
+        Some(unquoted(token))
     }
 }
 
@@ -213,7 +240,7 @@ mod tests {
     use super::*;
 
     fn tokens(line: &str) -> Vec<String> {
-        Tokens::new(line.as_bytes()).map(|t| String::from_utf8_lossy(t).into_owned()).collect()
+        Tokens::new(line.as_bytes(), None).map(|t| String::from_utf8_lossy(t).into_owned()).collect()
     }
 
     #[test]
@@ -224,6 +251,19 @@ mod tests {
         assert_eq!(tokens("1,,3"), ["1", "", "3"]);
         assert_eq!(tokens(",2"), ["", "2"]);
         assert!(tokens("   ").is_empty());
+    }
+
+    #[test]
+    fn one_separator_alone() {
+        let strict = |line: &str, separator| -> Vec<String> {
+            let tokens = Tokens::new(line.as_bytes(), Some(separator));
+            tokens.map(|t| String::from_utf8_lossy(t).into_owned()).collect()
+        };
+        assert_eq!(strict("New York, 1 ,2020-01-01 12:00,", b','), ["New York", "1", "2020-01-01 12:00", ""]);
+        assert_eq!(strict(",1,,\"a, b\",3", b','), ["", "1", "", "a, b", "3"]);
+        assert_eq!(strict("\t1\t\t3", b'\t'), ["", "1", "", "3"]);
+        assert_eq!(strict("\"open,1", b','), ["\"open", "1"]);
+        assert_eq!(strict("\"a\"b,1", b','), ["\"a\"b", "1"]);
     }
 
     #[test]
@@ -245,8 +285,13 @@ mod tests {
     fn decimal_commas_are_told_from_separators() {
         assert!(has_decimal_commas(b"1,5;-2,5;3,5"));
         assert!(has_decimal_commas(b"1,5 2,5 3,5 7"));
+        // Whole numbers among them.
+        assert!(has_decimal_commas(b"100 200,25 3"));
+        assert!(has_decimal_commas(b"-100,5;200;3"));
         assert!(!has_decimal_commas(b"1,2,3"));
         assert!(!has_decimal_commas(b"1, 2, 3"));
+        assert!(!has_decimal_commas(b"1,2 3"));
+        assert!(!has_decimal_commas(b"1,2,3 4 5"));
         assert!(!has_decimal_commas(b"1.5 2.5 3.5"));
     }
 }

@@ -1,6 +1,7 @@
 //! Meshes measured against closed forms.
 
 mod compare;
+mod components;
 mod creases;
 mod topology;
 
