@@ -11,8 +11,9 @@
 //! wall. The median over the chosen points, times 1.16 (see below), is the estimate.
 //!
 //! # Not guaranteed
-//! The least of four estimates is low by a seventh on a plane with Gaussian noise; the factor makes up for it. On points that fill a volume, such
-//! as trees, the estimate is about half their spacing, and the same holds where the surface bends within it.
+//! The least of four estimates is low by a seventh on a plane with Gaussian noise; the factor makes up for it. Noise of half
+//! the spacing is measured a quarter low: neighbours are then chosen by their noise. A wall thinner than about 1.5 times the
+//! spacing is taken for noise, and so are points that fill a volume, such as trees.
 
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
@@ -70,17 +71,19 @@ mod tests {
 
     #[test]
     fn gaussian_noise_on_flat_faces_is_measured() {
-        for noise in [1e-4, 1e-3, 5e-3] {
+        // The spacing is 0.011.
+        for (noise, tolerance) in [(1e-4, 0.06), (1e-3, 0.06), (5e-3, 0.25)] {
             let measured = of(&Scene::new(SceneKind::Box, 0).points(50_000, noise, 1));
-            assert!((measured / noise - 1.0).abs() < 0.06, "{measured} for {noise}");
+            assert!((measured / noise - 1.0).abs() < tolerance, "{measured} for {noise}");
         }
     }
 
     #[test]
     fn a_thin_wall_is_not_taken_for_noise() {
+        // Walls of 0.01 at a spacing of 0.004.
         let noise = 1e-3;
-        let measured = of(&Scene::new(SceneKind::PocketPlate, 0).points(60_000, noise, 1));
-        assert!((0.8..1.5).contains(&(measured / noise)), "{measured}");
+        let measured = of(&Scene::new(SceneKind::PocketPlate, 0).points(200_000, noise, 1));
+        assert!((0.9..1.2).contains(&(measured / noise)), "{measured}");
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::prior::Prior;
+use super::prior::{Columns, Prior};
 use super::prolong::Solved;
 use super::samples::Samples;
 use super::stencil::Stencil;
@@ -98,13 +98,13 @@ impl Level {
         nodes: Nodes,
         params: &LevelParams,
     ) -> Self {
-        let Nodes { blocks, known, free, cells } = nodes;
+        let Nodes { blocks, known, free, cells, columns } = nodes;
         let shift = lattice.shift_at(index);
         let data_block = data_blocks(&blocks, &cells);
         let weights = point_weights(&blocks, &data_block, &cells);
         let samples = Samples::new(points, &cells, &weights, shift);
         let stencil = Stencil::new(&blocks, &data_block, points, &cells, &weights, shift, params.alpha);
-        let prior = params.column_prior.then(|| Prior::new(&blocks, &cells, &free));
+        let prior = columns.map(|columns| Prior::new(&columns, &blocks, &free));
         Self { index, blocks, known, free, cells, data_block, samples, stencil, prior, gradient: Gradient::Element }
     }
 
@@ -135,15 +135,18 @@ pub(super) struct Nodes {
     pub(super) known: Vec<Mask>,
     pub(super) free: Vec<Mask>,
     pub(super) cells: Cells,
+    /// The columns of the prior, where there is one.
+    pub(super) columns: Option<Columns>,
 }
 
 impl Nodes {
     /// Every node of a level; all are free but those on fixed faces.
-    pub(super) fn dense(lattice: &Lattice, cells: Cells, index: u32, faces: FixedFaces) -> Self {
+    pub(super) fn dense(lattice: &Lattice, cells: Cells, index: u32, params: &LevelParams) -> Self {
         let blocks = Blocks::dense(lattice.blocks_at(index));
         let known = vec![[u64::MAX; 8]; blocks.len()];
-        let free = (0..blocks.len()).map(|b| faces.mask(&blocks, b).map(|w| !w)).collect();
-        Self { blocks, known, free, cells }
+        let free = (0..blocks.len()).map(|b| params.faces.mask(&blocks, b).map(|w| !w)).collect();
+        let columns = params.column_prior.then(|| Columns::new(&cells));
+        Self { blocks, known, free, cells, columns }
     }
 }
 

@@ -2,7 +2,8 @@
 
 use rayon::prelude::*;
 
-use super::level::{FixedFaces, Nodes, data_blocks};
+use super::level::{LevelParams, Nodes, data_blocks};
+use super::prior::Columns;
 use crate::domain::{
     Blocks, Cells, Lattice, LatticePoints, Mask, NONE, TETRAHEDRA, block_key, dilate, dilate_box, mask_get, mask_set,
     neighbor_code, shift, tetrahedron_of,
@@ -74,23 +75,28 @@ impl Parent {
     }
 }
 
-/// The nodes of the next finer level: those within [`BAND`] steps of the data or of the zero set of the prolonged F, and those one
-/// step further as fixed neighbours.
+/// The nodes of the next finer level: those within [`BAND`] steps of the data, of the zero set of the prolonged F, or of a node that the column
+/// prior tells another sign than the prolonged F has; and those one step further as fixed neighbours.
 pub(super) fn band(
     lattice: &Lattice,
     points: &LatticePoints,
     cells: Cells,
     coarse: &Solved,
-    faces: FixedFaces,
+    params: &LevelParams,
 ) -> Nodes {
     let index = coarse.index + 1;
     let extent = lattice.blocks_at(index);
+    let columns = params.column_prior.then(|| Columns::new(&cells));
     let mut keys: Vec<u64> = (0..coarse.blocks.len())
         .into_par_iter()
-        .filter(|&b| has_both_signs(coarse, b))
         .flat_map_iter(|b| {
             let c = coarse.blocks.coordinates[b].map(|c| 2 * c);
-            (0..8_u32).map(move |child| block_key([c[0] + (child & 1), c[1] + (child >> 1 & 1), c[2] + (child >> 2)]))
+            let children = (0..8_u32).map(move |i| [c[0] + (i & 1), c[1] + (i >> 1 & 1), c[2] + (i >> 2)]);
+            let signs = signs(coarse, b);
+            let columns = columns.as_ref();
+            children
+                .filter(move |&child| signs.both() || columns.is_some_and(|c| signs.contradict(c.told(child))))
+                .map(block_key)
         })
         .collect();
     keys.extend_from_slice(&cells.block_keys);
@@ -106,6 +112,9 @@ pub(super) fn band(
             let mut mask = data_nodes(&blocks, b, &data_block, points, &cells, shift);
             if let Some(parent) = Parent::new(coarse, blocks.coordinates[b]) {
                 crossing_nodes(&parent, &mut mask);
+                if let Some(columns) = &columns {
+                    contradicted_nodes(&parent, columns.told(blocks.coordinates[b]), &mut mask);
+                }
             }
             mask
         })
@@ -114,17 +123,23 @@ pub(super) fn band(
         free = dilate(&blocks, &free);
     }
     free.par_iter_mut().enumerate().for_each(|(b, mask)| {
-        let fixed = faces.mask(&blocks, b);
+        let fixed = params.faces.mask(&blocks, b);
         for z in 0..8 {
             mask[z] &= !fixed[z];
         }
     });
     let known = dilate(&blocks, &free);
     drop(data_block);
-    keep_nodes_in_use(blocks, known, free, cells)
+    keep_nodes_in_use(blocks, known, free, cells, columns)
 }
 
-fn keep_nodes_in_use(blocks: Blocks, known: Vec<Mask>, free: Vec<Mask>, cells: Cells) -> Nodes {
+fn keep_nodes_in_use(
+    blocks: Blocks,
+    known: Vec<Mask>,
+    free: Vec<Mask>,
+    cells: Cells,
+    columns: Option<Columns>,
+) -> Nodes {
     let used: Vec<usize> = (0..blocks.len()).filter(|&b| known[b] != [0; 8]).collect();
     let keys = used.iter().map(|&b| blocks.keys[b]).collect();
     Nodes {
@@ -132,11 +147,30 @@ fn keep_nodes_in_use(blocks: Blocks, known: Vec<Mask>, free: Vec<Mask>, cells: C
         free: used.iter().map(|&b| free[b]).collect(),
         blocks: Blocks::new(keys, blocks.extent),
         cells,
+        columns,
     }
 }
 
-/// Whether F changes sign among the known nodes of block `b` and the first layer of those after it.
-fn has_both_signs(level: &Solved, b: usize) -> bool {
+/// Which signs F has in a place.
+#[derive(Clone, Copy)]
+struct Signs {
+    negative: bool,
+    positive: bool,
+}
+
+impl Signs {
+    fn both(self) -> bool {
+        self.negative && self.positive
+    }
+
+    /// Whether the prior tells some node the sign that F has nowhere.
+    fn contradict(self, (air, solid): (Mask, Mask)) -> bool {
+        !self.positive && air != [0; 8] || !self.negative && solid != [0; 8]
+    }
+}
+
+/// The signs of F among the known nodes of block `b` and the first layer of those after it.
+fn signs(level: &Solved, b: usize) -> Signs {
     let (mut negative, mut positive) = (false, false);
     for after in 0..8_usize {
         let step: [i32; 3] = std::array::from_fn(|a| (after >> a & 1) as i32);
@@ -158,7 +192,7 @@ fn has_both_signs(level: &Solved, b: usize) -> bool {
             }
         }
     }
-    negative && positive
+    Signs { negative, positive }
 }
 
 /// The nodes of block `b` that the tetrahedra of the points reach.
@@ -227,6 +261,22 @@ fn crossing_nodes(parent: &Parent, mask: &mut Mask) {
         });
         if crosses {
             mask_set(mask, local);
+        }
+    }
+}
+
+/// Adds the nodes that the prior tells another sign than the prolonged F has.
+///
+/// A tower that is two cells wide on a coarse level is held by too few nodes there, and may be air with a floating roof. On the
+/// next level many nodes in its midst are told to be solid, but these lie far from the data and from the zero set.
+fn contradicted_nodes(parent: &Parent, (air, solid): (Mask, Mask), mask: &mut Mask) {
+    for local in 0..512_usize {
+        let (air, solid) = (mask_get(&air, local), mask_get(&solid, local));
+        if air || solid {
+            let f = parent.at([local & 7, local >> 3 & 7, local >> 6].map(|c| c as i32));
+            if air && f < 0.0 || solid && f >= 0.0 {
+                mask_set(mask, local);
+            }
         }
     }
 }

@@ -1,12 +1,13 @@
 //! The sign of F on the first level: boundary potentials, pulled to zero at the data.
 //!
-//! F is held on some faces of the box and the energy is minimised with no other driving term: field lines flood in from outside
+//! F is held on some faces of the box, and pulled to its targets by the column prior where there is one; the energy is
+//! minimised with no other driving term: field lines flood in from outside
 //! and stop at the data. In a deep cavity the field is exponentially weak; it is solved in f64, because the first step with
 //! p = 1 asks for its direction only.
 
 use super::level::{FixedFaces, Level};
 use super::operator::apply;
-use super::prior::AIR;
+use super::prior::{AIR, GAMMA};
 use super::solve::{SolveParams, conjugate_gradients};
 
 /// Values on the faces of the box, zero elsewhere.
@@ -33,6 +34,14 @@ pub(super) fn boundary_potential(level: &Level, faces: FixedFaces) -> Vec<f32> {
     apply(level, &f, &mut q);
     for (r, q) in r.iter_mut().zip(&q) {
         *r = -q;
+    }
+    if let Some(prior) = &level.prior {
+        for b in 0..level.blocks.len() {
+            for local in 0..512 {
+                let told = |mask| f64::from(u8::from(crate::domain::mask_get(mask, local)));
+                r[b * 512 + local] += f64::from(GAMMA * AIR) * (told(&prior.air[b]) - told(&prior.solid[b]));
+            }
+        }
     }
     let scale = r.iter().map(|r| r * r).sum::<f64>().sqrt();
     let params = SolveParams { tolerance: 1e-8, max_steps: 1000 };

@@ -35,16 +35,18 @@ impl Placed {
 
     fn dense(&self, index: u32, faces: FixedFaces, alpha: f32, column_prior: bool) -> Level {
         let cells = Cells::new(&self.lattice, &self.points, index);
-        let nodes = Nodes::dense(&self.lattice, cells, index, faces);
-        Level::new(&self.lattice, &self.points, index, nodes, &LevelParams { alpha, faces, column_prior })
+        let params = LevelParams { alpha, faces, column_prior };
+        let nodes = Nodes::dense(&self.lattice, cells, index, &params);
+        Level::new(&self.lattice, &self.points, index, nodes, &params)
     }
 
     /// The band above a dense level that holds `coarse`.
     fn band(&self, coarse: &Solved, faces: FixedFaces, column_prior: bool) -> Level {
         let index = coarse.index + 1;
         let cells = Cells::new(&self.lattice, &self.points, index);
-        let nodes = band(&self.lattice, &self.points, cells, coarse, faces);
-        Level::new(&self.lattice, &self.points, index, nodes, &LevelParams { alpha: ALPHA, faces, column_prior })
+        let params = LevelParams { alpha: ALPHA, faces, column_prior };
+        let nodes = band(&self.lattice, &self.points, cells, coarse, &params);
+        Level::new(&self.lattice, &self.points, index, nodes, &params)
     }
 
     /// F at every point, evaluated from the definition of P1.
