@@ -61,17 +61,19 @@ fn bodies_are_closed_whole_and_filled() {
     // Points misplaced between inside and outside are those within a fraction of a cell of the surface: with 0.014 a cell the
     // bounds allow a layer of about a tenth of a cell, and more where edges are rounded.
     let bodies = [
-        (SceneKind::Sphere, Some(0), 0.997),
+        (SceneKind::Sphere, Some(0), 0.998),
         (SceneKind::Torus, Some(1), 0.996),
-        (SceneKind::Box, Some(0), 0.99),
-        (SceneKind::LBlock, Some(0), 0.985),
-        (SceneKind::Stairs, Some(0), 0.985),
+        (SceneKind::Box, Some(0), 0.994),
+        (SceneKind::LBlock, Some(0), 0.995),
+        (SceneKind::Stairs, Some(0), 0.994),
         // Floor and walls are thinner than a cell here: nothing is asked but a sound mesh.
         (SceneKind::PocketPlate, None, 0.0),
     ];
     for (kind, genus, occupancy) in bodies {
         let scene = Sample::new(kind, 1);
-        let (mesh, _) = run(&scene.points(20_000, 0.001, 1), Scene::Object, 0.014, |_| ());
+        let (mesh, report) = run(&scene.points(20_000, 0.001, 1), Scene::Object, 0.014, |_| ());
+        let thin = report.fit.levels.iter().any(|l| l.thin_walled);
+        assert_eq!(thin, kind == SceneKind::PocketPlate, "{kind}: taken for thin-walled or not");
         let t = sound(&mesh, kind.name());
         assert!(t.closed, "{kind}");
         if let Some(genus) = genus {
@@ -95,8 +97,8 @@ fn a_city_is_right_side_up_and_near() {
     assert_eq!(t.large_components, 1);
     let found = measure(&mesh, &scene.truth).overall;
     println!("city: mean {:.6}, orientation {:.5}", found.distances.combined.mean, found.orientation);
-    // Noise is 0.001: the surface is nearer to the truth than the points are, and an eighth of a cell.
-    assert!(found.distances.combined.mean < 0.0006, "{}", found.distances.combined.mean);
+    // Noise is 0.001: the surface is nearer to the truth than the points are, and a tenth of a cell.
+    assert!(found.distances.combined.mean < 0.0005, "{}", found.distances.combined.mean);
     assert!(found.orientation > 0.999, "{}", found.orientation);
 }
 
@@ -223,8 +225,15 @@ fn trims_axes_and_attributes_are_obeyed() {
 
 #[test]
 fn motion_scale_and_order_change_little() {
+    for (kind, motion) in [(SceneKind::Torus, 0.05), (SceneKind::LBlock, 0.05)] {
+        moved_scaled_and_shuffled(kind, motion);
+    }
+}
+
+/// Tolerances are mean distances in cells.
+fn moved_scaled_and_shuffled(kind: SceneKind, motion: f64) {
     let cell = 0.02;
-    let cloud = Sample::new(SceneKind::Torus, 1).points(10_000, 0.001, 1);
+    let cloud = Sample::new(kind, 1).points(10_000, 0.001, 1);
     let (mesh, _) = run(&cloud, Scene::Object, cell, |_| ());
     let apart = |other: &Mesh| measure(other, &mesh).overall.distances.combined.mean / cell;
 
@@ -234,24 +243,24 @@ fn motion_scale_and_order_change_little() {
     let turned = Cloud { points: rotated(&cloud.points), ..Cloud::default() };
     let (other, _) = run(&turned, Scene::Object, cell, |_| ());
     let d = measure(&other, &moved).overall.distances.combined.mean / cell;
-    println!("rigid motion: {d:.5} cells");
-    assert!(d < 0.1, "rigid motion: {d} cells");
+    println!("{kind}, rigid motion: {d:.5} cells");
+    assert!(d < motion, "{kind}, rigid motion: {d} cells");
 
     // By 1000 and its resolution with it: the same lattice but for the rounding of fixed-point coordinates.
     let large = Cloud { points: cloud.points.iter().map(|p| p.map(|c| 1000.0 * c)).collect(), ..Cloud::default() };
     let (mut other, _) = run(&large, Scene::Object, 1000.0 * cell, |_| ());
     other.vertices.iter_mut().for_each(|v| *v = v.map(|c| c / 1000.0));
     let d = apart(&other);
-    println!("scale: {d:.6} cells");
-    assert!(d < 0.01, "scale: {d} cells");
+    println!("{kind}, scale: {d:.6} cells");
+    assert!(d < 0.001, "{kind}, scale: {d} cells");
 
     // Sums over the points of a cell change in their last bits, and with them where iterations end.
     let mut backwards = cloud.clone();
     backwards.points.reverse();
     let (other, _) = run(&backwards, Scene::Object, cell, |_| ());
     let d = apart(&other);
-    println!("order: {d:.6} cells");
-    assert!(d < 0.01, "order: {d} cells");
+    println!("{kind}, order: {d:.6} cells");
+    assert!(d < 0.001, "{kind}, order: {d} cells");
 
     // World coordinates of a national grid resolve 2^-31: five-millionths of a cell here.
     let far = [2_600_000.123, 1_200_000.456, 0.0];
@@ -262,8 +271,8 @@ fn motion_scale_and_order_change_little() {
     other.vertices.iter_mut().for_each(|v| *v = std::array::from_fn(|a| v[a] + (offset[a] - far[a])));
     other.world_from_local = [0.0; 3];
     let d = apart(&other);
-    println!("georeference: {d:.6} cells");
-    assert!(d < 0.01, "georeference: {d} cells");
+    println!("{kind}, georeference: {d:.6} cells");
+    assert!(d < 0.01, "{kind}, georeference: {d} cells");
 }
 
 #[test]
@@ -273,12 +282,12 @@ fn the_mesh_is_equal_bit_for_bit_on_any_number_of_threads() {
     {
         let cloud = Sample::new(kind, 1).points(10_000, 0.001, 1);
         let mut first: Option<Mesh> = None;
-        for threads in [1, 2, 3] {
+        for threads in [1, 2, 2, 3] {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
             let (mesh, report) = pool.install(|| run(&cloud, scene, cell, |_| ()));
             assert!(report.fit.levels.len() >= 3, "levels are refined");
             let first = first.get_or_insert_with(|| mesh.clone());
-            assert!(*first == mesh, "{kind} on {threads} threads");
+            assert!(*first == mesh, "{kind} on {threads} threads, or in another run");
         }
     }
 }

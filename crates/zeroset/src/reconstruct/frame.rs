@@ -56,10 +56,10 @@ impl Up {
 
 /// The frame in which F is fitted: the file's frame, rotated.
 ///
-/// Ground keeps its upright axis, which the seed and the column prior need. A body is turned away from all axes: faces that
-/// lie along planes of the lattice are a special case, and machined parts mostly come with such faces. On them the element's
-/// gradient lets F crumple, so that thin walls and solid faces are hard to tell apart (a plate of 1 x 0.7 x 0.03 with walls
-/// of one cell: 0.62 of the box right along the axes, 0.98 turned).
+/// Ground keeps its upright axis, which the seed and the column prior need. A body is turned away from all axes: faces along
+/// planes of the lattice are a special case, and machined parts mostly come with such faces. On them the element's gradient
+/// lets F crumple, and thin walls cannot be told from solid faces. The share of samples with a second sheet near, measured:
+/// along the axes 0.24 on a solid l-block and 0.10 on a plate with walls of one cell; turned 0.02 and 0.77.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Frame(Matrix3<f64>);
 
