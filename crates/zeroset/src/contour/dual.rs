@@ -13,8 +13,8 @@ use crate::field::LatticeField;
 use crate::mesh::Mesh;
 
 /// Crossings are kept this far from the ends of their edges, in parts of an edge, so that vertices of different tetrahedra never
-/// coincide where F vanishes at a node. A hundredth of a cell is below any noise; at a thousandth slivers appear that f32
-/// formats collapse.
+/// coincide where F vanishes at a node. A hundredth of a cell is far below noise, and far above the rounding of
+/// f32 formats.
 const END: f64 = 0.01;
 
 /// What the extraction did.

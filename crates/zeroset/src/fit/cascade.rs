@@ -45,17 +45,14 @@ pub struct FitParams {
     pub scene: Scene,
     /// Spacing of the finest lattice, in the unit of the points.
     pub resolution: f64,
-    /// Screening: the weight alpha of the data term. 4 suits noise of a fifth of a cell.
+    /// Screening: the weight alpha of the data term. 4 suits noise of a quarter of a cell.
     pub screening: f64,
     /// How far the box around the points reaches beyond them, relative to their longest side.
     pub padding_rel: f64,
 }
 
 impl FitParams {
-    /// Usual screening.
-    ///
-    /// With 2, sheets of two cells begin to merge (a bracket loses 0.1 % of its volume); with 8 and more, noise of a third
-    /// of a cell shows in the surface.
+    /// Usual screening, for noise of a quarter of a cell. `reconstruct` sets it from the noise that it measures.
     pub const SCREENING: f64 = 4.0;
     /// Usual padding: room for the field lines of the seed.
     pub const PADDING_REL: f64 = 0.1;

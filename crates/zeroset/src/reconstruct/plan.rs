@@ -86,7 +86,7 @@ impl Default for ReconstructParams {
 
 /// The automatic resolution over the spacing of the points.
 ///
-/// Below about 1.2 noise and gaps show in the surface; above 2 detail that the points bear is lost.
+/// So a cell of the surface holds about two points. Finer cells would mostly be empty, and the surface be drawn between the points.
 const RESOLUTION_REL: f64 = 1.5;
 /// The automatic trim of open scenes over the spacing of the points: bridges canals and the shadows of buildings.
 const TRIM_REL: f64 = 50.0;

@@ -25,9 +25,11 @@ pub struct SceneEvidence {
 const FLAT: f64 = 0.1;
 /// Taller than this is a body.
 const TALL: f64 = 0.6;
-/// A larger share of columns with two layers is a body. Bodies of the test set have 0.6 and more, cities under 0.1.
+/// A larger share of columns with two layers is a body. Bodies no taller than TALL that were
+/// tried have 0.53 to 0.84.
 const LAYERED: f64 = 0.3;
-/// Walls with a smaller share of their voxels filled were hardly scanned. Scanned walls fill 0.9 and more, bare ones under 0.2.
+/// Walls with a smaller share of their voxels filled were hardly scanned. Where walls were sampled,
+/// cities filled 0.66 and 0.89 of them; seen from the air 0.17, and 0.34 of real ones.
 const BARE: f64 = 0.5;
 /// Most columns across.
 const ACROSS: f64 = 256.0;
