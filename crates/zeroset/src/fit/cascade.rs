@@ -245,12 +245,10 @@ impl Cascade<'_> {
     fn run(&self) -> Result<(Fitted, FitReport), FitError> {
         let mut report = FitReport::default();
         let levels = self.lattice.finest + 1;
-        // The cost of a level is about four times that of the one before.
-        let share = |done: u32| 0.9 * 4.0_f64.powi(done as i32 - levels as i32);
         self.monitor.stage(&format!("fitting level 1 of {levels}"));
         let mut current = self.seeded(0)?;
         for index in 1..levels {
-            self.monitor.share(share(index));
+            self.monitor.share(self.share_before(index));
             self.monitor.stage(&format!("fitting level {} of {levels}", index + 1));
             report.levels.push(current.report.clone());
             let thin = current.report.thin_walled;
@@ -258,10 +256,15 @@ impl Cascade<'_> {
             current =
                 if self.is_dense(index, most) { self.climb(current, index)? } else { self.refined(&current, index)? };
         }
-        self.monitor.share(share(levels));
+        self.monitor.share(self.share_before(levels));
         report.levels.push(current.report.clone());
         report.peak_bytes = report.levels.iter().map(|l| l.bytes).max().unwrap_or(0);
         Ok((current, report))
+    }
+
+    /// The share of the whole work that is done before a level. A level costs about four times as much as the one before.
+    fn share_before(&self, index: u32) -> f64 {
+        0.9 * 4.0_f64.powi(index as i32 - self.lattice.finest as i32 - 1)
     }
 
     fn level_params(&self) -> LevelParams {
@@ -402,6 +405,11 @@ impl Cascade<'_> {
         let mut quotient = f64::INFINITY;
         for step in 0..=steps {
             check(self.monitor)?;
+            // A dense level may be iterated on several times, and its share must not fall.
+            if !self.is_dense(level.index, MAX_THIN_SEED_NODES) {
+                let (before, after) = (self.share_before(level.index), self.share_before(level.index + 1));
+                self.monitor.share(before + (after - before) * step as f64 / (steps + 1) as f64);
+            }
             let norm = linearise(level, &f, [&mut p, &mut q, &mut s], &mut r);
             let energy = energy(level, &f);
             quotient = energy * occupied / (norm * norm);
