@@ -120,8 +120,8 @@ impl OrderTwo {
         for b in 0..level.blocks.len() {
             let present = (0..64).filter(|row| level.stencil.present[b] >> row & 1 == 1);
             for (row, coefficients) in present.zip(&level.stencil.rows[b]) {
-                for x in 0..8 {
-                    let c: [f64; 15] = std::array::from_fn(|e| f64::from(coefficients[e][x]));
+                for x in 0..8_usize {
+                    let c = coefficients.map(|entry| f64::from(entry[x]));
                     if c[0] > 0.0 {
                         data.push((grid.place(&level.blocks, b, 8 * row + x), c));
                     }
