@@ -308,6 +308,7 @@ fn options_reach_the_plan() {
     };
     assert_eq!(plan("--scene terrain")["scene"], "terrain");
     assert_eq!(plan("--scene terrain")["scene_reason"], "asked for");
+    assert_eq!(plan("--scene free")["scene"], "free");
     assert_eq!(plan("--up -y")["up"], "minus_y");
     assert_eq!(plan("--resolution 0.1")["resolution"], 0.1);
     let side = plan("--depth 5")["resolution"].as_f64().unwrap() * 32.0;

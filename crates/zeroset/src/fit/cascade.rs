@@ -4,6 +4,8 @@ use std::time::Instant;
 
 use serde::Serialize;
 
+use super::eigen_seed::eigenvectors;
+use super::free::{potentials, turn_outward};
 use super::gradient::{gradient_lengths, linearise, thin_share};
 use super::level::{FixedFaces, Gradient, Level, LevelParams, Nodes};
 use super::operator::{apply, energy};
@@ -106,8 +108,11 @@ pub struct LevelReport {
     pub seconds: f64,
     /// Whether a new seed on this level beat the one continued from the level before.
     pub seeded: bool,
-    /// R(F) of the rejected start, where two were compared.
+    /// The lowest R(F) of the rejected starts, where several were compared.
     pub other_rayleigh_quotient: Option<f64>,
+    /// Free scenes, on dense levels: share of the nodes on the faces of the box that are outside. A body has 1; near 1/2 the surface cuts
+    /// the box, and its upper side was taken for outside.
+    pub outside_share: Option<f64>,
     /// Share of the samples that have a second sheet within about a cell; `None` on the first levels.
     pub thin_share: Option<f64>,
     /// Whether the body was taken for thin-walled on this level.
@@ -289,25 +294,41 @@ impl Cascade<'_> {
     /// Seeds anew on a dense level and iterates to rest.
     fn seeded(&self, index: u32) -> Result<Fitted, FitError> {
         let start = Instant::now();
-        let level = self.dense_level(index);
-        let (f, report) = self.seed_on(&level, start)?;
+        let mut level = self.dense_level(index);
+        let (f, report) = self.seed_on(&mut level, None, start)?;
         self.settled(level, f, report, start)
     }
 
-    fn seed_on(&self, level: &Level, start: Instant) -> Result<(Vec<f32>, LevelReport), FitError> {
-        let f = boundary_potential(level, self.params.scene.faces());
-        let (f, report) = self.iterate(level, f, STEPS[0], start)?;
-        Ok((f, LevelReport { seeded: true, ..report }))
+    /// Iterates from every start that the scene knows of, and keeps the lowest R. `continued` is F from the level before.
+    fn seed_on(
+        &self,
+        level: &mut Level,
+        continued: Option<&[f32]>,
+        start: Instant,
+    ) -> Result<(Vec<f32>, LevelReport), FitError> {
+        let starts = match (self.params.scene, continued) {
+            (Scene::Free, None) => eigenvectors(level, self.params.screening, self.monitor)?,
+            (Scene::Free, Some(continued)) => potentials(level, continued),
+            (scene, _) => vec![boundary_potential(level, scene.faces())],
+        };
+        let mut tried = Vec::with_capacity(starts.len());
+        for f in starts {
+            tried.push(self.iterate(level, f, STEPS[0], start)?);
+        }
+        tried.sort_by(|a, b| a.1.rayleigh_quotient.total_cmp(&b.1.rayleigh_quotient));
+        let other_rayleigh_quotient = tried.get(1).map(|other| other.1.rayleigh_quotient);
+        let (f, report) = tried.swap_remove(0);
+        Ok((f, LevelReport { seeded: true, other_rayleigh_quotient, ..report }))
     }
 
     /// Both continues and seeds anew on a dense level, and keeps the lower R.
     fn climb(&self, coarse: Fitted, index: u32) -> Result<Fitted, FitError> {
         let start = Instant::now();
-        let level = self.dense_level(index);
+        let mut level = self.dense_level(index);
         let f = prolong(&coarse.solved, &level.blocks, &level.known);
         drop(coarse);
         let (continued, old) = self.iterate(&level, f, STEPS[0], start)?;
-        let (seeded, new) = self.seed_on(&level, start)?;
+        let (seeded, new) = self.seed_on(&mut level, Some(&continued), start)?;
         let seconds = start.elapsed().as_secs_f64();
         let wins = new.rayleigh_quotient < (1.0 - SEED_MARGIN) * old.rayleigh_quotient;
         let (f, kept, other) = if wins { (seeded, new, old) } else { (continued, old, new) };
@@ -317,7 +338,15 @@ impl Cascade<'_> {
 
     /// Ends a dense level. Where the first seeds end it is decided whether walls are thin: if so, F stays as it is; else it goes
     /// on to rest with the recovered gradient.
-    fn settled(&self, mut level: Level, f: Vec<f32>, report: LevelReport, start: Instant) -> Result<Fitted, FitError> {
+    fn settled(
+        &self,
+        mut level: Level,
+        mut f: Vec<f32>,
+        report: LevelReport,
+        start: Instant,
+    ) -> Result<Fitted, FitError> {
+        let outside_share = (self.params.scene == Scene::Free).then(|| turn_outward(&level, &mut f));
+        let report = LevelReport { outside_share, ..report };
         if self.is_open() || self.is_dense(level.index + 1, MAX_SEED_NODES) {
             return Ok(Fitted { solved: level.into_solved(f), report });
         }
@@ -430,6 +459,7 @@ impl Cascade<'_> {
             seconds: start.elapsed().as_secs_f64(),
             seeded: false,
             other_rayleigh_quotient: None,
+            outside_share: None,
             thin_share: None,
             thin_walled: false,
             iterations,

@@ -27,6 +27,9 @@
 //! screened Poisson solve (Kazhdan & Hoppe 2013).
 
 mod cascade;
+mod eigen;
+mod eigen_seed;
+mod free;
 mod gradient;
 mod level;
 mod operator;

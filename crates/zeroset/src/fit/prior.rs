@@ -10,9 +10,9 @@ use crate::domain::{Blocks, Cells, Mask, block_of_key, mask_set};
 
 /// Weight of the prior at a node, against 1 for an occupied cell.
 ///
-/// A quarter leaves walls that were scanned in charge: their cells pull with weight alpha = 4 and more. Ten times less and roofs
-/// stand on melted stalks again; ten times more and the prior's staircase shows in the walls.
-pub(super) const GAMMA: f32 = 0.25;
+/// An airborne city of 10^5 points lies 0.0019, 0.00096, 0.00084 and 0.00083 from the truth with 0.05, 0.25, 1 and 3; with 3 the
+/// columns begin to show as stairs in walls that run across the lattice.
+pub(super) const GAMMA: f32 = 1.0;
 /// What a node over a column is pulled to; a node under it to the negative of this.
 pub(super) const AIR: f32 = 0.5;
 

@@ -1,5 +1,7 @@
 //! What the mathematics promises: transposes, symmetry, exact prolongation, whole bands, and an R that never rises.
 
+use super::eigen_seed::eigenvectors;
+use super::free::turn_outward;
 use super::gradient::linearise;
 use super::level::{FixedFaces, Gradient, Level, LevelParams, Nodes};
 use super::operator::{apply, energy};
@@ -492,5 +494,49 @@ fn the_rayleigh_quotient_never_rises_within_a_level_and_no_cell_around_the_surfa
         let level = Solved { index: finest, blocks: field.blocks, known: field.known, f: field.values };
         let (crossed, cut) = crossed_cells(&level);
         assert!(crossed > 5000 && cut == 0, "{kind}: {cut} of {crossed} cells are cut");
+    }
+}
+
+#[test]
+fn the_seed_of_free_scenes_does_not_depend_on_threads_and_crosses_zero_at_the_data() {
+    let placed = Placed::new(SceneKind::Torus, 4000, 1.0 / 50.0);
+    let level = placed.dense(0, FixedFaces::None, ALPHA, false);
+    let seeds = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| eigenvectors(&level, f64::from(ALPHA), &()).unwrap())
+    };
+    let (one, three) = (seeds(1), seeds(3));
+    assert_eq!(one.len(), 4);
+    assert!(one == three);
+    let square = |values: &[f64]| values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64;
+    let at_points = square(&placed.at_points(0, &level.blocks, &one[0]));
+    let all: Vec<f64> = one[0].iter().map(|&v| f64::from(v)).collect();
+    assert!(at_points < 0.05 * square(&all), "{at_points} at the points, {} in the box", square(&all));
+    // The middle of the tube and the middle of the ring lie on different sides.
+    let near = |p: [f64; 3]| {
+        let h = placed.lattice.spacing_at(0);
+        let node = std::array::from_fn(|a| ((p[a] - placed.lattice.origin[a]) / h).round() as i64);
+        value(&level.blocks, &one[0], node)
+    };
+    assert!(near([0.35, 0.0, 0.0]) * near([0.0; 3]) < 0.0);
+}
+
+#[test]
+fn the_side_of_a_body_is_outside_and_of_a_sheet_the_upper_one() {
+    let placed = Placed::new(SceneKind::Torus, 4000, 1.0 / 50.0);
+    let level = placed.dense(0, FixedFaces::None, ALPHA, false);
+    let h = placed.lattice.spacing_at(0);
+    let body = ball(&placed, 0, &level.blocks, 2.0 * h);
+    let sheet: Vec<f32> = nodes(&level.blocks)
+        .map(|(_, _, node)| placed.lattice.position(0, node.map(|c| c as f64)))
+        .map(|p| (p[2] - 0.3 * p[0] + 0.1) as f32)
+        .collect();
+    for (f, shares) in [(body, 1.0..=1.0), (sheet, 0.5..=0.9)] {
+        for sign in [1.0, -1.0] {
+            let mut turned: Vec<f32> = f.iter().map(|v| sign * v).collect();
+            let share = turn_outward(&level, &mut turned);
+            assert!(shares.contains(&share), "{share}");
+            assert!(turned == f);
+        }
     }
 }

@@ -72,9 +72,6 @@ pub enum ReconstructError {
         /// A resolution that fits.
         possible: f64,
     },
-    /// The scene is designed but not built.
-    #[error("the scene free is not available yet; give --scene object, terrain or airborne")]
-    SceneNotThere,
     /// The fit found no surface at all.
     #[error("no surface was found; give a finer --resolution or another --scene")]
     NoSurface,

@@ -182,9 +182,6 @@ pub fn plan<'a>(
     if on_one_line(&upright) {
         return Err(ReconstructError::Degenerate { shape: "on one line" });
     }
-    if params.scene == Some(Scene::Free) {
-        return Err(ReconstructError::SceneNotThere);
-    }
     let trim_length = match params.trim {
         Trim::Length(value) if !(value.is_finite() && value > 0.0) => {
             return Err(ReconstructError::Length { name: "trim", value });
