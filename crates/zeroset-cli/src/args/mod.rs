@@ -140,7 +140,7 @@ pub struct ReconstructArgs {
     /// Finest cell as a share of the box instead: its longest side over 2^N.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=20))]
     pub depth: Option<u32>,
-    /// Drop surface farther than this from the points, or `off` [default: 50 times the spacing; off for objects].
+    /// Drop surface farther than this from the points, or `off` [default: 60 times the spacing; off for objects].
     #[arg(long, value_name = "LENGTH|off", value_parser = values::trim)]
     pub trim: Option<TrimChoice>,
     /// Drop pieces of fewer than N triangles, but never the largest [default: 100; off for objects].
