@@ -35,6 +35,16 @@ fn a_sample_piped_in_comes_out_as_a_closed_mesh() {
 }
 
 #[test]
+fn a_free_scene_says_when_neither_side_is_clearly_outside() {
+    let folder = folder();
+    for (kind, clear) in [("sphere", true), ("city", false)] {
+        line(folder.path(), &format!("sample {kind} -o {kind}.xyz --points 3000")).ok();
+        let said = line(folder.path(), &format!("reconstruct {kind}.xyz -o out.ply --scene free")).ok().stderr;
+        assert_eq!(!said.contains("neither side is clearly outside"), clear, "{kind}: {said}");
+    }
+}
+
+#[test]
 fn equal_bytes_on_any_number_of_threads() {
     let folder = folder();
     line(folder.path(), "sample airborne-city -o city.las --points 20000").ok();
@@ -380,12 +390,12 @@ fn a_late_error_is_one_line() {
 fn small_pieces_of_open_scenes_are_dropped_and_counted() {
     let folder = folder();
     line(folder.path(), "sample city -o city.xyz --points 30000").ok();
-    // Balls of about a cell, high above the roofs.
+    // Balls smaller than a cell, high above the roofs.
     let mut balls = Vec::new();
     for ball in 1..9 {
         for i in 0..40 {
             let (z, angle) = (1.0 - (2.0 * f64::from(i) + 1.0) / 40.0, 2.4 * f64::from(i));
-            let (across, radius) = ((1.0 - z * z).sqrt(), 0.006);
+            let (across, radius) = ((1.0 - z * z).sqrt(), 0.004);
             let middle = [f64::from(ball) / 9.0, 0.5, 0.25];
             let direction = [across * angle.cos(), across * angle.sin(), z];
             balls.push(std::array::from_fn(|a| middle[a] + radius * direction[a]));

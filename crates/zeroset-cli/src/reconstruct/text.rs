@@ -120,6 +120,10 @@ pub(super) fn summary(done: &ReconstructReport, output: &OutputReport, seconds: 
     if let Some(offset) = output.local_offset.filter(|offset| *offset != [0.0; 3]) {
         text += &format!("\nits coordinates are local: add {} for those of the input", position(offset, 0));
     }
+    if done.fit.outside_is_clear() == Some(false) {
+        text += "\nthe surface runs out of the box of the points, so neither side is clearly outside: the upper one was taken; \
+                 --scene terrain or airborne knows";
+    }
     if !output.attributes_left_out.is_empty() {
         text += &format!("\nthe format has no place for {}", output.attributes_left_out.join(", "));
     }

@@ -5,7 +5,7 @@ use std::time::Instant;
 use serde::Serialize;
 
 use super::eigen_seed::eigenvectors;
-use super::free::{potentials, turn_outward};
+use super::free::{is_clear, potentials, turn_outward};
 use super::gradient::{gradient_lengths, linearise, thin_share};
 use super::level::{FixedFaces, Gradient, Level, LevelParams, Nodes};
 use super::operator::{apply, energy};
@@ -132,6 +132,14 @@ pub struct FitReport {
     pub levels: Vec<LevelReport>,
     /// Largest number of bytes held at once by the levels and the solver.
     pub peak_bytes: usize,
+}
+
+impl FitReport {
+    /// Free scenes: whether one side of the surface is clearly outside. `None` for other scenes.
+    #[must_use]
+    pub fn outside_is_clear(&self) -> Option<bool> {
+        self.levels.iter().rev().find_map(|level| level.outside_share).map(is_clear)
+    }
 }
 
 /// Most steps on each level; the last entry serves all further levels.

@@ -44,6 +44,11 @@ pub(super) fn potentials(level: &mut Level, continued: &[f32]) -> Vec<Vec<f32>> 
     starts
 }
 
+/// Whether a share of the faces' nodes that are outside leaves no doubt.
+pub(super) fn is_clear(share: f64) -> bool {
+    share.max(1.0 - share) >= CLEAR
+}
+
 /// Gives F its sign, and returns the share of the faces' nodes that are outside.
 pub(super) fn turn_outward(level: &Level, f: &mut [f32]) -> f64 {
     let middle = f64::from(8 * level.blocks.extent[2] - 1) / 2.0;
@@ -54,7 +59,7 @@ pub(super) fn turn_outward(level: &Level, f: &mut [f32]) -> f64 {
         moment += (height - middle) * f64::from(f[at].signum());
     });
     let share = f64::from(outside) / f64::from(nodes);
-    let turn = if share.max(1.0 - share) >= CLEAR { share < 0.5 } else { moment < 0.0 };
+    let turn = if is_clear(share) { share < 0.5 } else { moment < 0.0 };
     if turn {
         f.iter_mut().for_each(|v| *v = -*v);
         return 1.0 - share;
