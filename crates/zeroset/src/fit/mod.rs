@@ -10,8 +10,8 @@
 //! ```
 //!
 //! The terms in brackets are the column prior of airborne scenes: node c is told to be air (t = 1/2) or solid (t = -1/2). All
-//! lengths are in cells of the level at hand, and w_i = 1 / (points in the cell of i), so that every occupied cell weighs the
-//! same whatever the density of the scan.
+//! lengths are in cells of the level at hand, and w_i = 1 / (mean number of points in the occupied cells around i), so that the
+//! surface weighs the same whatever the density of the scan.
 //!
 //! # How
 //! Freeze n_i = grad F(P_i) / |grad F(P_i)|, solve the linear system (alpha B'WB + L + gamma) F = div(sum_i w_i n_i delta_i) +
@@ -19,8 +19,9 @@
 //! power step for a nonlinear eigenproblem). This stays true when the system is only solved roughly: F is first scaled to the
 //! best multiple of itself, and each step of conjugate gradients lowers the quadratic from there.
 //!
-//! The gradient in N is the recovered one: central differences at the nodes, interpolated to the points. The right-hand side is
-//! its exact transpose.
+//! The gradient in N is that of the point's own tetrahedron while inside and outside are decided, and on thin-walled bodies;
+//! else the recovered one: central differences at the nodes, interpolated to the points. The right-hand side is its exact
+//! transpose either way.
 //!
 //! # Source
 //! The normalisation with p = 1: design of this project, after Taubin 1991 and Hein & Buehler 2010. One step is a
