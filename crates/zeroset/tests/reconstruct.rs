@@ -177,8 +177,8 @@ fn walls_that_were_hardly_scanned_are_upright() {
             report.plan.screening
         );
         assert_eq!(topology.large_components, 1, "no roof floats, seed {seed}");
-        // Single triangles ripple; walls as a whole must stand.
-        assert!(signed.abs() < 3.0, "{signed} degrees");
+        assert!(signed.abs() < 1.0, "walls as a whole: {signed} degrees");
+        assert!(absolute < 3.0, "wall by wall, with their ripples: {absolute} degrees");
     }
 }
 
