@@ -73,12 +73,12 @@ impl<'a> Steps<'a> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use rayon::prelude::*;
 
     /// Keeps what it is told, and stops after so many shares.
-    struct Log(Mutex<Vec<f64>>, usize);
+    pub(crate) struct Log(pub(crate) Mutex<Vec<f64>>, pub(crate) usize);
 
     impl Monitor for Log {
         fn share(&self, done: f64) {

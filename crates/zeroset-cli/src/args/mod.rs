@@ -9,7 +9,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Parser, Subcommand, ValueEnum};
 use zeroset::sample::SceneKind;
 
-pub use values::{Bounds, Classes, MinComponent, Outliers, TrimChoice};
+pub use values::{Bounds, Classes, OrOff};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -142,10 +142,10 @@ pub struct ReconstructArgs {
     pub depth: Option<u32>,
     /// Drop surface farther than this from the points, or `off` [default: 60 times the spacing; off for objects].
     #[arg(long, value_name = "LENGTH|off", value_parser = values::trim)]
-    pub trim: Option<TrimChoice>,
+    pub trim: Option<OrOff<f64>>,
     /// Drop pieces of fewer than N triangles, but never the largest [default: 100; off for objects].
     #[arg(long, value_name = "N|off", value_parser = values::min_component)]
-    pub min_component: Option<MinComponent>,
+    pub min_component: Option<OrOff<NonZeroUsize>>,
     /// Weight of the points against smoothness, without unit [default: 1 to 16, by the noise of the points over the cell].
     #[arg(long, value_name = "ALPHA", value_parser = values::positive)]
     pub screening: Option<f64>,
@@ -165,7 +165,7 @@ pub struct ReconstructArgs {
     pub bounds: Option<Bounds>,
     /// Drop groups of up to K points that lie far from all others; 8 is usual.
     #[arg(long, value_name = "off|K", value_parser = values::outliers, default_value = "off", help_heading = "Points")]
-    pub outliers: Outliers,
+    pub outliers: OrOff<NonZeroUsize>,
 
     /// Threads to use [default: all]; the mesh does not depend on it.
     #[arg(long, value_name = "N", value_parser = values::threads, help_heading = "Running")]

@@ -10,31 +10,27 @@ pub struct Classes(pub Vec<u8>);
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bounds(pub [[f64; 2]; 3]);
 
-/// Whether strays are dropped.
+/// A value, or `off`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Outliers {
-    /// No.
+pub enum OrOff<T> {
+    /// `off`.
     Off,
-    /// Groups of up to so many points.
-    Groups(NonZeroUsize),
+    /// The value.
+    Value(T),
 }
 
-/// Whether small pieces of the mesh are dropped.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum MinComponent {
-    /// No.
-    Off,
-    /// Pieces of fewer triangles.
-    Triangles(NonZeroUsize),
-}
+impl<T> OrOff<T> {
+    /// `None` for `off`.
+    pub fn value(self) -> Option<T> {
+        match self {
+            Self::Off => None,
+            Self::Value(value) => Some(value),
+        }
+    }
 
-/// How far from the points surface may lie.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum TrimChoice {
-    /// Anywhere.
-    Off,
-    /// At most this far.
-    Length(f64),
+    fn parse(text: &str, value: impl FnOnce(&str) -> Result<T, String>) -> Result<Self, String> {
+        if text == "off" { Ok(Self::Off) } else { value(text).map(Self::Value) }
+    }
 }
 
 fn number(text: &str) -> Result<f64, String> {
@@ -83,23 +79,19 @@ pub(super) fn bounds(text: &str) -> Result<Bounds, String> {
     Ok(Bounds(sides))
 }
 
-pub(super) fn outliers(text: &str) -> Result<Outliers, String> {
-    if text == "off" {
-        return Ok(Outliers::Off);
-    }
-    let groups = text.parse().ok().filter(|k: &NonZeroUsize| k.get() <= 1000);
-    groups.map(Outliers::Groups).ok_or_else(|| "`off` or a whole number from 1 to 1000 is needed".into())
+pub(super) fn outliers(text: &str) -> Result<OrOff<NonZeroUsize>, String> {
+    OrOff::parse(text, |text| {
+        let groups = text.parse().ok().filter(|k: &NonZeroUsize| k.get() <= 1000);
+        groups.ok_or_else(|| "`off` or a whole number from 1 to 1000 is needed".into())
+    })
 }
 
-pub(super) fn min_component(text: &str) -> Result<MinComponent, String> {
-    if text == "off" {
-        return Ok(MinComponent::Off);
-    }
-    text.parse().map(MinComponent::Triangles).map_err(|_| "`off` or a whole number from 1 is needed".into())
+pub(super) fn min_component(text: &str) -> Result<OrOff<NonZeroUsize>, String> {
+    OrOff::parse(text, |text| text.parse().map_err(|_| "`off` or a whole number from 1 is needed".into()))
 }
 
-pub(super) fn trim(text: &str) -> Result<TrimChoice, String> {
-    if text == "off" { Ok(TrimChoice::Off) } else { positive(text).map(TrimChoice::Length) }
+pub(super) fn trim(text: &str) -> Result<OrOff<f64>, String> {
+    OrOff::parse(text, positive)
 }
 
 pub(super) fn threads(text: &str) -> Result<NonZeroUsize, String> {

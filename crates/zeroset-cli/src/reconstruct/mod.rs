@@ -16,7 +16,7 @@ use zeroset::reconstruct::{
 };
 use zeroset_io::{CloudFile, CloudFormat, WriteOptions, read_clouds, shown, write_mesh};
 
-use crate::args::{AttributesChoice, MinComponent, ReconstructArgs, SceneChoice, TrimChoice, UpChoice};
+use crate::args::{AttributesChoice, OrOff, ReconstructArgs, SceneChoice, UpChoice};
 use crate::console::{Console, Lines};
 use crate::error::{CliError, in_words};
 use crate::progress::Progress;
@@ -104,8 +104,8 @@ fn params(args: &ReconstructArgs, formats: &[CloudFormat]) -> ReconstructParams 
         screening: args.screening,
         trim: match args.trim {
             None => Trim::Auto,
-            Some(TrimChoice::Off) => Trim::Off,
-            Some(TrimChoice::Length(length)) => Trim::Length(length),
+            Some(OrOff::Off) => Trim::Off,
+            Some(OrOff::Value(length)) => Trim::Length(length),
         },
         attributes: match args.attributes {
             Some(AttributesChoice::Off) => AttributeChoice::Off,
@@ -149,8 +149,8 @@ const LEAST_TRIANGLES: usize = 100;
 /// The fewest triangles that a piece of the mesh must have. Objects keep all: what is small there may be meant.
 fn least_triangles(args: &ReconstructArgs, scene: Scene) -> Option<usize> {
     match (args.min_component, scene) {
-        (Some(MinComponent::Off), _) | (None, Scene::Object | Scene::Free) => None,
-        (Some(MinComponent::Triangles(least)), _) => Some(least.get()),
+        (Some(OrOff::Off), _) | (None, Scene::Object | Scene::Free) => None,
+        (Some(OrOff::Value(least)), _) => Some(least.get()),
         (None, Scene::Terrain | Scene::Airborne) => Some(LEAST_TRIANGLES),
     }
 }

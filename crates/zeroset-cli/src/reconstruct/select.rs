@@ -1,10 +1,12 @@
 //! Which points are used.
 
+use std::num::NonZeroUsize;
+
 use zeroset::cloud::{Cloud, Filter, NOISE_CLASSES, isolated_points, retain};
 use zeroset::monitor::Monitor;
 use zeroset_io::{NO_CLASS, ReadReport, Source, shown};
 
-use crate::args::{AttributesChoice, Outliers, ReconstructArgs};
+use crate::args::{AttributesChoice, ReconstructArgs};
 use crate::cloud_box::bounds;
 use crate::error::{CliError, in_words};
 use crate::interrupt;
@@ -63,10 +65,7 @@ fn filters(args: &ReconstructArgs) -> Filters {
     let open = |v: f64| v.is_finite().then_some(v);
     Filters {
         bounds: args.bounds.map(|b| b.0.map(|side| side.map(open))),
-        outliers: match args.outliers {
-            Outliers::Off => None,
-            Outliers::Groups(k) => Some(k.get()),
-        },
+        outliers: args.outliers.value().map(NonZeroUsize::get),
         classes,
         exclude,
     }

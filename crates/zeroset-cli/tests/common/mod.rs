@@ -1,15 +1,20 @@
 //! What the tests share: the built command, a folder that cleans up, and a small file of every format.
 
-#![allow(dead_code, unreachable_pub, reason = "every test file takes a part of this")]
+#![allow(dead_code, unreachable_pub, unused_imports, reason = "every test file takes a part of this")]
 
 use std::ffi::OsStr;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
 use zeroset::cloud::Cloud;
 use zeroset::sample::{Scene, SceneKind};
 use zeroset_io::{WriteOptions, write_cloud};
+
+#[path = "../../../zeroset-io/tests/common/shared_data.rs"]
+mod shared_data;
+
+pub use shared_data::shared_data;
 
 /// Suffixes of clouds, one for each format.
 pub const CLOUDS: [&str; 8] = ["las", "laz", "ply", "xyz", "csv", "pts", "pcd", "e57"];
@@ -93,17 +98,6 @@ pub fn entries(folder: &Path) -> Vec<String> {
         read.map(|entry| entry.expect("the folder can be read").file_name().to_string_lossy().into_owned()).collect();
     names.sort();
     names
-}
-
-/// A file of the shared test data, if that is there.
-pub fn shared_data(name: &str) -> Option<PathBuf> {
-    let places = ["../../../shared/data", "../../../../shared/data"];
-    let found = places.iter().map(|place| Path::new(env!("CARGO_MANIFEST_DIR")).join(place).join(name));
-    let found = found.into_iter().find(|path| path.exists());
-    if found.is_none() {
-        println!("skipped: the shared test data has no {name}");
-    }
-    found
 }
 
 /// A small torus around a place in the world.

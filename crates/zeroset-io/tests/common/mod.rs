@@ -1,27 +1,18 @@
 //! What the tests share: a folder that cleans up, and a small sound file of every format.
 
-#![allow(dead_code, unreachable_pub, reason = "every test file takes a part of this")]
-
-use std::path::{Path, PathBuf};
+#![allow(dead_code, unreachable_pub, unused_imports, reason = "every test file takes a part of this")]
 
 use zeroset::cloud::{Attributes, Cloud};
 use zeroset::mesh::Mesh;
 use zeroset_io::{CloudFormat, MeshFormat, WriteOptions, write_cloud, write_mesh};
 
+mod shared_data;
+
+pub use shared_data::shared_data;
+
 /// A folder of the test's own.
 pub fn folder() -> tempfile::TempDir {
     tempfile::tempdir().expect("the system has a folder for temporary files")
-}
-
-/// A file of the shared test data, if that is there.
-pub fn shared_data(name: &str) -> Option<PathBuf> {
-    let places = ["../../../shared/data", "../../../../shared/data"];
-    let found = places.iter().map(|place| Path::new(env!("CARGO_MANIFEST_DIR")).join(place).join(name));
-    let found = found.into_iter().find(|path| path.exists());
-    if found.is_none() {
-        println!("skipped: the shared test data has no {name}");
-    }
-    found
 }
 
 /// Points of Dutch and Swiss grids, to the millimetre.

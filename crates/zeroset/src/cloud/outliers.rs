@@ -186,16 +186,8 @@ mod tests {
 
     #[test]
     fn the_monitor_sees_shares_and_can_stop_it() {
+        use crate::monitor::tests::Log;
         use std::sync::Mutex;
-        struct Log(Mutex<Vec<f64>>, usize);
-        impl Monitor for Log {
-            fn share(&self, done: f64) {
-                self.0.lock().unwrap().push(done);
-            }
-            fn cancelled(&self) -> bool {
-                self.0.lock().unwrap().len() >= self.1
-            }
-        }
         let mut cloud = Scene::new(SceneKind::Torus, 1).points(20_000, 0.001, 1);
         cloud.points.push([5.0, 0.0, 0.0]);
         let patient = Log(Mutex::default(), usize::MAX);

@@ -161,6 +161,8 @@ const THIN_SHARE: f64 = 0.15;
 const FINISH: usize = 2;
 /// A new seed is tried on a thin-walled body while a level has at most this many nodes across: it can hardly be won back later.
 const MAX_THIN_SEED_NODES: u32 = 192;
+/// The share of a whole reconstruction that the fit takes, for the monitor.
+pub(crate) const SHARE: f64 = 0.9;
 /// A level is at rest when a step lowers R by less than this share.
 const AT_REST: f64 = 3e-4;
 /// A new seed is tried while a level has at most this many nodes across.
@@ -277,7 +279,7 @@ impl Cascade<'_> {
 
     /// The share of the whole work that is done before a level. A level costs about four times as much as the one before.
     fn share_before(&self, index: u32) -> f64 {
-        0.9 * 4.0_f64.powi(index as i32 - self.lattice.finest as i32 - 1)
+        SHARE * 4.0_f64.powi(index as i32 - self.lattice.finest as i32 - 1)
     }
 
     fn level_params(&self) -> LevelParams {

@@ -44,5 +44,6 @@ mod stencil;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use cascade::SHARE;
 pub use cascade::{FitError, FitParams, FitReport, Iteration, LevelReport, Prepared, Scene, fit};
 pub use level::Gradient;

@@ -76,15 +76,7 @@ impl Columns {
         let columns = keys
             .into_par_iter()
             .map(|block| {
-                // This block's columns with one around them.
-                let near: [Option<&[Column; 64]>; 9] = std::array::from_fn(|i| {
-                    let step = |c: u32, s: usize| c.wrapping_add(s as u32).wrapping_sub(1);
-                    self.0.get(&[step(block[0], i % 3), step(block[1], i / 3)])
-                });
-                let at = |x: i32, y: i32| -> Column {
-                    let (bx, by) = ((x + 8) >> 3, (y + 8) >> 3);
-                    near[(bx + 3 * by) as usize]?[((x & 7) | (y & 7) << 3) as usize]
-                };
+                let at = self.near(block);
                 let heights = std::array::from_fn(|i| {
                     let (x, y) = ((i & 7) as i32, (i >> 3) as i32);
                     at(x, y).or_else(|| {
@@ -101,19 +93,22 @@ impl Columns {
         Self(columns)
     }
 
+    /// The columns of a block, and those of the blocks around it: x and y from -8 to 15.
+    fn near(&self, block: [u32; 2]) -> impl Fn(i32, i32) -> Column {
+        let blocks: [Option<&[Column; 64]>; 9] = std::array::from_fn(|i| {
+            let step = |c: u32, s: usize| c.wrapping_add(s as u32).wrapping_sub(1);
+            self.0.get(&[step(block[0], i % 3), step(block[1], i / 3)])
+        });
+        move |x, y| {
+            let (bx, by) = ((x + 8) >> 3, (y + 8) >> 3);
+            blocks[(bx + 3 * by) as usize]?[((x & 7) | (y & 7) << 3) as usize]
+        }
+    }
+
     /// The nodes of a block that are told to be air, and those told to be solid.
     pub(super) fn told(&self, block: [u32; 3]) -> (Mask, Mask) {
         let (mut air, mut solid) = ([0; 8], [0; 8]);
-        // The blocks of columns at -1 and 0 along x and y.
-        let near: [[Option<&[Column; 64]>; 2]; 2] = std::array::from_fn(|dy| {
-            std::array::from_fn(|dx| {
-                self.0.get(&[(block[0] + dx as u32).wrapping_sub(1), (block[1] + dy as u32).wrapping_sub(1)])
-            })
-        });
-        let column = |x: i32, y: i32| {
-            let heights = near[usize::from(y >= 0)][usize::from(x >= 0)]?;
-            heights[((x & 7) | (y & 7) << 3) as usize]
-        };
+        let column = self.near([block[0], block[1]]);
         for y in 0..8_i32 {
             for x in 0..8_i32 {
                 let around = [(x - 1, y - 1), (x, y - 1), (x - 1, y), (x, y)].map(|(i, j)| column(i, j));

@@ -1,8 +1,7 @@
 //! The sign of F on the first level: boundary potentials, pulled to zero at the data.
 //!
 //! F is held on some faces of the box, and pulled to its targets by the column prior where there is one; the energy is
-//! minimised with no other driving term: field lines flood in from outside
-//! and stop at the data. In a deep cavity the field is exponentially weak; it is solved in f64, because the first step with
+//! minimised with no other driving term: field lines flood in from outside and stop at the data. In a deep cavity the field is exponentially weak; it is solved in f64, because the first step with
 //! p = 1 asks for its direction only.
 
 use super::level::{FixedFaces, Level};
@@ -60,7 +59,7 @@ fn potential(level: &Level, mut f: Vec<f64>) -> Vec<f32> {
     if let Some(prior) = &level.prior {
         for b in 0..level.blocks.len() {
             for local in 0..512 {
-                let told = |mask| f64::from(u8::from(crate::domain::mask_get(mask, local)));
+                let told = |mask| f64::from(u8::from(mask_get(mask, local)));
                 r[b * 512 + local] += f64::from(GAMMA * AIR) * (told(&prior.air[b]) - told(&prior.solid[b]));
             }
         }

@@ -371,12 +371,17 @@ fn crossed_cells(level: &Solved) -> (usize, usize) {
     (crossed, cut)
 }
 
-#[test]
-fn the_band_holds_all_that_the_level_needs() {
+/// Points of a torus, and a coarse level on which F is a ball instead.
+fn torus_with_ball(radius: f64) -> (Placed, Solved) {
     let placed = Placed::new(SceneKind::Torus, 3000, 1.0 / 40.0);
     let coarse = placed.dense(0, FixedFaces::All, ALPHA, false);
-    let f = ball(&placed, 0, &coarse.blocks, 0.2);
-    let solved = coarse.into_solved(f);
+    let f = ball(&placed, 0, &coarse.blocks, radius);
+    (placed, coarse.into_solved(f))
+}
+
+#[test]
+fn the_band_holds_all_that_the_level_needs() {
+    let (placed, solved) = torus_with_ball(0.2);
     let level = placed.band(&solved, FixedFaces::All, false);
     let all: u32 = level.known.iter().flatten().map(|w| w.count_ones()).sum();
     let nodes_at = placed.lattice.nodes_at(1);
@@ -431,10 +436,7 @@ fn the_band_holds_all_that_the_level_needs() {
 
 #[test]
 fn completed_levels_cut_no_cell_around_the_surface() {
-    let placed = Placed::new(SceneKind::Torus, 3000, 1.0 / 40.0);
-    let coarse = placed.dense(0, FixedFaces::All, ALPHA, false);
-    let f = ball(&placed, 0, &coarse.blocks, 0.3);
-    let solved = coarse.into_solved(f);
+    let (placed, solved) = torus_with_ball(0.3);
     // The zero set where it was, and moved by up to the width of the band, in both directions.
     for moved in [0.0, 1.5, -1.5, 2.5, -2.5, 3.0, -3.0, 3.5, -3.5] {
         let level = placed.band(&solved, FixedFaces::All, false);

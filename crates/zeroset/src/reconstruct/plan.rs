@@ -195,7 +195,7 @@ pub fn plan<'a>(
         .scene
         .map_or_else(|| SceneEvidence::of(&upright, spacing).verdict(), |scene| (scene, "asked for".to_owned()));
     let frame = Frame::new(params.up, scene);
-    let points: Vec<[f64; 3]> = upright.into_par_iter().map(|p| frame.enter(params.up.restore(p))).collect();
+    let points: Vec<[f64; 3]> = cloud.points.par_iter().map(|&p| frame.enter(p)).collect();
     let screening = |resolution| params.screening.unwrap_or_else(|| screening_for(noise, resolution));
     let fit = |resolution| FitParams { screening: screening(resolution), ..FitParams::new(scene, resolution) };
     let wanted = match params.resolution {

@@ -11,7 +11,7 @@ use super::frame::Frame;
 use super::{Plan, PlanReport, ReconstructError};
 use crate::cloud::Cloud;
 use crate::contour::{ColumnOutline, ContourReport, contour};
-use crate::fit::{FitReport, Scene};
+use crate::fit::{self, FitReport, Scene};
 use crate::mesh::Mesh;
 use crate::monitor::{Monitor, Steps, check};
 use crate::spatial::PointTree;
@@ -88,8 +88,7 @@ impl Plan<'_> {
     }
 }
 
-/// The shares of the whole that are done before and after the extraction; the fit ends at the first.
-const AFTER_FIT: f64 = 0.9;
+/// The share of the whole that is done after the extraction.
 const AFTER_CONTOUR: f64 = 0.97;
 
 /// Counts the polygons of the extraction for a monitor.
@@ -106,7 +105,7 @@ impl<'a> Watch<'a> {
     const POLYGONS_A_CELL: usize = 5;
 
     fn new(monitor: &'a dyn Monitor, occupied_cells: usize) -> Self {
-        let steps = Steps::new(monitor, AFTER_FIT..AFTER_CONTOUR, Self::POLYGONS_A_CELL * occupied_cells);
+        let steps = Steps::new(monitor, fit::SHARE..AFTER_CONTOUR, Self::POLYGONS_A_CELL * occupied_cells);
         Self { steps, polygons: AtomicUsize::new(0), cancelled: AtomicBool::new(false) }
     }
 
