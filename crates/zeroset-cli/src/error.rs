@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::fit2d::Fit2dError;
 use zeroset::mesh::{CompareError, MeshError};
 use zeroset::reconstruct::ReconstructError;
 use zeroset_io::{IoError, shown};
@@ -22,6 +23,14 @@ pub(crate) enum CliError {
         inputs: String,
         /// Why.
         source: ReconstructError,
+    },
+    /// The fit in the plane is not possible.
+    #[error("{}: {source}", shown(input))]
+    Fit2d {
+        /// The input.
+        input: PathBuf,
+        /// Why.
+        source: Fit2dError,
     },
     /// A mesh without area.
     #[error("{}: there is no surface in it ({faces} triangles, no area); give a mesh", shown(path))]
@@ -77,6 +86,9 @@ pub(crate) enum CliError {
     /// The threads cannot be started.
     #[error("the threads cannot be started: {0}; give fewer --threads")]
     Threads(#[from] rayon::ThreadPoolBuildError),
+    /// Options that have no meaning together.
+    #[error("{0}")]
+    Usage(String),
     /// The user wants to stop.
     #[error("interrupted")]
     Interrupted,

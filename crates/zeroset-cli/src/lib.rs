@@ -18,6 +18,7 @@ mod compare;
 mod completions;
 mod console;
 mod error;
+mod fit2d;
 mod info;
 mod interrupt;
 mod memory;
@@ -44,6 +45,9 @@ use error::CliError;
 /// Exit code of a command that was interrupted: 128 and the number of SIGINT.
 const INTERRUPTED: u8 = 130;
 
+/// Exit code for options that have no meaning together, as for those that the parser refuses.
+const WRONG_USAGE: u8 = 2;
+
 /// Runs the command with the given words, of which the first is the program's own name.
 pub fn main(words: impl IntoIterator<Item = OsString>) -> ExitCode {
     let args = match Args::try_parse_from(words) {
@@ -65,7 +69,7 @@ pub fn main(words: impl IntoIterator<Item = OsString>) -> ExitCode {
         }
         Err(error) => {
             Console::complain(&format!("error: {error}"));
-            ExitCode::FAILURE
+            if matches!(error, CliError::Usage(_)) { ExitCode::from(WRONG_USAGE) } else { ExitCode::FAILURE }
         }
     }
 }
@@ -73,6 +77,7 @@ pub fn main(words: impl IntoIterator<Item = OsString>) -> ExitCode {
 fn run(command: Command) -> Result<(), CliError> {
     match command {
         Command::Reconstruct(args) => reconstruct::run(&args),
+        Command::Fit2d(args) => fit2d::run(&args),
         Command::Sample(args) => sample::run(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Info(args) => info::run(&args),

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use zeroset::cloud::Cloud;
 use zeroset::contour::ContourReport;
-use zeroset::fit::FitReport;
+use zeroset::fit::cascade::FitReport;
 use zeroset::mesh::{DroppedComponents, Mesh, drop_small_components};
 use zeroset::reconstruct::{PlanReport, ReconstructParams, ReconstructReport};
 use zeroset_io::{IoError, MeshFormat, ReadReport, WriteReport, shown, write_atomically};

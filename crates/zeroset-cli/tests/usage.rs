@@ -11,7 +11,7 @@ use common::{folder, line, run, zeroset};
 fn help_tells_what_there_is() {
     let folder = folder();
     let help = line(folder.path(), "--help").ok().stdout;
-    for command in ["reconstruct", "sample", "compare", "info", "completions"] {
+    for command in ["reconstruct", "fit2d", "sample", "compare", "info", "completions"] {
         assert!(help.contains(command), "{command}");
         let own = line(folder.path(), &format!("{command} --help")).ok().stdout;
         assert!(own.contains("Usage: zeroset"), "{own}");
@@ -90,7 +90,7 @@ fn manual_pages_tell_every_option() {
     use clap::CommandFactory;
     let folder = folder();
     clap_mangen::generate_to(zeroset_cli::args::Args::command(), folder.path()).unwrap();
-    let commands = ["reconstruct", "sample", "compare", "info", "completions"];
+    let commands = ["reconstruct", "fit2d", "sample", "compare", "info", "completions"];
     for command in commands {
         let page = std::fs::read_to_string(folder.path().join(format!("zeroset-{command}.1"))).unwrap();
         assert!(page.contains(".SH SYNOPSIS"), "{page}");

@@ -33,7 +33,7 @@ pub enum IoError {
     UnknownSuffix {
         /// The file.
         path: PathBuf,
-        /// "cloud" or "mesh".
+        /// "cloud", "mesh" and so on.
         kind: &'static str,
         /// The suffix found, without its dot, if there is any.
         suffix: Option<String>,

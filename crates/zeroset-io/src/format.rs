@@ -110,7 +110,7 @@ impl MeshFormat {
     }
 }
 
-fn by_suffix<F: Copy>(path: &Path, kind: &'static str, known: &[(&'static str, F)]) -> Result<F, IoError> {
+pub(crate) fn by_suffix<F: Copy>(path: &Path, kind: &'static str, known: &[(&'static str, F)]) -> Result<F, IoError> {
     let suffix = path.extension().map(|s| s.to_string_lossy().to_ascii_lowercase());
     let found = suffix.as_deref().and_then(|suffix| known.iter().find(|(name, _)| *name == suffix));
     found.map(|(_, format)| *format).ok_or_else(|| IoError::UnknownSuffix {

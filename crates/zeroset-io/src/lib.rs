@@ -4,6 +4,7 @@
 //! |---|---|---|
 //! | clouds | LAS, LAZ (COPC too), PLY, XYZ / TXT / CSV / ASC, PTS, PCD, E57 | LAS, LAZ, PLY, XYZ / TXT / CSV / ASC, PTS |
 //! | meshes | PLY, OBJ, STL, OFF, GLB | PLY, OBJ, STL, OFF, GLB |
+//! | data in the plane | JSON, CSV | JSON |
 //!
 //! ```no_run
 //! use std::path::Path;
@@ -33,6 +34,7 @@ mod input;
 pub mod mesh;
 mod number;
 mod output;
+pub mod planar;
 mod ply;
 
 pub use cloud::{
@@ -43,6 +45,7 @@ pub use error::{IoError, shown};
 pub use format::{CloudFormat, MeshFormat};
 pub use mesh::{WriteOptions, WriteReport, read_mesh, read_mesh_bytes, write_mesh};
 pub use output::{abandon_writes, check_writable, write_atomically};
+pub use planar::{PlanarData, PlanarFormat, PlanarResult, planar_json, read_planar, read_planar_bytes};
 
 /// The largest coordinate that is read or written, in the unit of the file.
 ///

@@ -33,6 +33,10 @@ fn write_seeds() {
     for (suffix, format) in MeshFormat::KNOWN {
         write(format!("mesh_{suffix}"), "sound", common::sound_mesh(*format));
     }
+    let planar = r#"{"points":[[1,2],[3,4,0.5]],"segments":[[[0,0],[1,1]]],"polygons":[[[0,0],[1,0],[0,1]]],
+        "domain":{"vertices":[[0,0],[1,0],[0,1]],"triangles":[[0,1,2]]}}"#;
+    write("planar_json".into(), "sound", planar.into());
+    write("planar_csv".into(), "sound", "x,y,weight\n1,2,3\n# c\n4 5;6\n".into());
     let stl = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n";
     write("mesh_stl".into(), "text", stl.into());
     write("mesh_obj".into(), "forms", "v 0 0 0 1 0 0\nv 1 0 0\nv 0 1 0\nf 1/1/1 2//2 -1\nf 1 2 \\\n3\n".into());

@@ -3,11 +3,12 @@
 //! `zeroset` finds a function F of space whose zero set is the surface that a cloud of points was measured on. It needs
 //! no normals and no orientation. F is negative inside and positive outside.
 //!
-//! The rooms follow the data: [`cloud`] -> [`domain`] -> [`fit`] -> [`field`] -> [`contour`] -> [`mesh`]; [`reconstruct`]
+//! The rooms follow the data: [`cloud`] -> [`domain`] -> [`basis`] -> [`fit`] -> [`field`] -> [`contour`] -> [`mesh`]; [`reconstruct`]
 //! walks through all of them in one call. The remaining
 //! rooms serve all of these: [`spatial`] answers nearest-neighbour questions, [`sample`] makes scenes with a known truth, and
 //! [`monitor`] carries progress out and a wish to stop in.
 
+pub mod basis;
 pub mod cloud;
 pub mod contour;
 pub mod domain;

@@ -1,7 +1,7 @@
 //! Scenes of which nothing is known.
 
 use zeroset::cloud::Cloud;
-use zeroset::fit::Scene;
+use zeroset::fit::cascade::Scene;
 use zeroset::mesh::{CompareParams, compare};
 use zeroset::reconstruct::{ReconstructParams, Resolution, plan};
 use zeroset::sample::{Scene as Sample, SceneKind};

@@ -1,7 +1,7 @@
 //! From points to mesh, against scenes whose truth is known.
 
 use zeroset::cloud::Cloud;
-use zeroset::fit::Scene;
+use zeroset::fit::cascade::Scene;
 use zeroset::mesh::{CompareParams, CompareReport, Mesh, Topology, compare, topology};
 use zeroset::reconstruct::{AttributeChoice, ReconstructParams, ReconstructReport, Resolution, Trim, Up, plan};
 use zeroset::sample::{Scene as Sample, SceneKind};

@@ -1,5 +1,6 @@
 //! What can be typed.
 
+mod fit2d;
 mod values;
 
 use std::num::NonZeroUsize;
@@ -9,7 +10,8 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Parser, Subcommand, ValueEnum};
 use zeroset::sample::SceneKind;
 
-pub use values::{Bounds, Classes, OrOff};
+pub use fit2d::{BasisChoice, BranchesChoice, DomainChoice, Fit2dArgs, NormalizationChoice, SolverChoice};
+pub use values::{Bounds, Classes, OrOff, Rectangle};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -61,6 +63,8 @@ pub struct Args {
 pub enum Command {
     /// Turn raw points into a mesh.
     Reconstruct(Box<ReconstructArgs>),
+    /// Fit a curve to points, segments and polygons in the plane, and draw it.
+    Fit2d(Box<Fit2dArgs>),
     /// Make a test scene: a cloud, and the exact mesh behind it.
     Sample(SampleArgs),
     /// Measure how well a mesh agrees with the truth.

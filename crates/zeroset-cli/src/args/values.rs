@@ -10,6 +10,15 @@ pub struct Classes(pub Vec<u8>);
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bounds(pub [[f64; 2]; 3]);
 
+/// A box in the plane.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rectangle {
+    /// Lower corner.
+    pub low: [f64; 2],
+    /// Upper corner, above the lower one on both axes.
+    pub high: [f64; 2],
+}
+
 /// A value, or `off`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum OrOff<T> {
@@ -77,6 +86,16 @@ pub(super) fn bounds(text: &str) -> Result<Bounds, String> {
         }
     }
     Ok(Bounds(sides))
+}
+
+pub(super) fn rectangle(text: &str) -> Result<Rectangle, String> {
+    let values = text.split(',').map(number).collect::<Result<Vec<_>, _>>()?;
+    let [x0, y0, x1, y1] = values[..] else { return Err(format!("4 numbers are needed, {} were given", values.len())) };
+    if x0 < x1 && y0 < y1 {
+        Ok(Rectangle { low: [x0, y0], high: [x1, y1] })
+    } else {
+        Err("xmax must be greater than xmin, and ymax than ymin; the order is xmin,ymin,xmax,ymax".into())
+    }
 }
 
 pub(super) fn outliers(text: &str) -> Result<OrOff<NonZeroUsize>, String> {
@@ -150,6 +169,14 @@ mod tests {
         assert_eq!(bounds("-1, -2, 3, 4, -5, 6").map(|b| b.0[2]), Ok([-5.0, 6.0]));
         for text in ["", "1,2,3", "1,2,3,4,5", "3,0,1,1", "a,b,c,d", "0,0,nan,1"] {
             assert!(bounds(text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn rectangles_have_an_area() {
+        assert_eq!(rectangle("-1,0, 2,3"), Ok(Rectangle { low: [-1.0, 0.0], high: [2.0, 3.0] }));
+        for text in ["", "0,0,1", "0,0,1,1,1", "0,0,0,1", "1,0,0,1", "0,0,inf,1"] {
+            assert!(rectangle(text).is_err(), "{text}");
         }
     }
 

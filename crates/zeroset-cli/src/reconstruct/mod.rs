@@ -8,7 +8,7 @@ pub(crate) use check::refuse_same;
 
 use std::time::Instant;
 
-use zeroset::fit::Scene;
+use zeroset::fit::cascade::Scene;
 use zeroset::mesh::Mesh;
 use zeroset::reconstruct::{
     AttributeChoice, Plan, PlanReport, ReconstructError, ReconstructParams, ReconstructReport, Resolution, Trim, Up,

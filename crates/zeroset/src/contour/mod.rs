@@ -24,6 +24,7 @@
 mod dual;
 mod outline;
 mod rings;
+pub mod simplicial;
 mod split;
 mod triangulate;
 
@@ -32,3 +33,4 @@ mod tests;
 
 pub use dual::{ContourReport, contour};
 pub use outline::ColumnOutline;
+pub use simplicial::{Branches, Polyline, zero_lines, zero_surface};

@@ -24,6 +24,7 @@ mod lattice;
 mod mask;
 mod morton;
 mod points;
+mod simplicial;
 
 pub use blocks::{BLOCK_NODES, Blocks, NONE, block_key, block_of_key, neighbor_code};
 pub(crate) use gather::{Halo, gather, halo_index, replicate_at_domain_faces};
@@ -32,3 +33,4 @@ pub use lattice::{Lattice, LatticeError};
 pub use mask::{Mask, dilate, dilate_box, mask_get, mask_row, mask_set};
 pub(crate) use mask::{shift, shifted};
 pub use points::{Cells, LatticePoints};
+pub use simplicial::{Barycentric, DomainError, FacetPiece, Place, SegmentPiece, SimplicialMesh};

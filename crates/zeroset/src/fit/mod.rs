@@ -1,49 +1,25 @@
-//! Fits F to raw points, coarse to fine: the normal-free cascade.
+//! From data to F: two fits of one idea.
 //!
-//! # What
-//! Finds F with F(P_i) = 0 from points without normals by minimising a normalised energy
+//! Both minimise a normalised energy E(F) / N(F), so that F is kept from zero without normals.
 //!
-//! ```text
-//! R(F) = E(F) / N(F)^2
-//! E(F) = alpha * sum_i w_i F(P_i)^2 + integral |grad F|^2  ( + gamma * sum_c F_c^2 )
-//! N(F) = sum_i w_i |grad F(P_i)|                           ( + gamma * sum_c t_c F_c )
-//! ```
+//! - [`cascade`] fits millions of points on the sparse lattice, coarse to fine. It is what reconstructs a city.
+//! - [`normalized`] is the same idea in general: in 2D and 3D, on any simplicial mesh or with radial functions, from points, lines
+//!   and facets, with every normalisation. It is exact, small, and the reference that the cascade is tested against.
 //!
-//! The terms in brackets are the column prior of airborne scenes: node c is told to be air (t = 1/2) or solid (t = -1/2). All
-//! lengths are in cells of the level at hand, and w_i = 1 / (mean number of points in the occupied cells around i), so that the
-//! surface weighs the same whatever the density of the scan.
-//!
-//! # How
-//! Freeze n_i = grad F(P_i) / |grad F(P_i)|, solve the linear system (alpha B'WB + L + gamma) F = div(sum_i w_i n_i delta_i) +
-//! gamma t, repeat. N is convex and homogeneous, so it lies above its linearisation, and each step lowers R (an inverse
-//! power step for a nonlinear eigenproblem). This stays true when the system is only solved roughly: F is first scaled to the
-//! best multiple of itself, and each step of conjugate gradients lowers the quadratic from there.
-//!
-//! The gradient in N is that of the point's own tetrahedron while inside and outside are decided, and on thin-walled bodies;
-//! else the recovered one: central differences at the nodes, interpolated to the points. The right-hand side is its exact
-//! transpose either way.
-//!
-//! # Source
-//! The normalisation with p = 1: design of this project, after Taubin 1991 and Hein & Buehler 2010. One step is a
-//! screened Poisson solve (Kazhdan & Hoppe 2013).
+//! `eigen` holds the eigensolvers that both use.
 
-mod cascade;
-mod eigen;
-mod eigen_seed;
-mod free;
-mod gradient;
-mod level;
-mod operator;
-mod prior;
-mod prolong;
-mod samples;
-mod seed;
-mod solve;
-mod stencil;
+pub mod cascade;
+pub(crate) mod eigen;
+pub mod normalized;
 
-#[cfg(test)]
-mod tests;
+use serde::Serialize;
 
-pub(crate) use cascade::SHARE;
-pub use cascade::{FitError, FitParams, FitReport, Iteration, LevelReport, Prepared, Scene, fit};
-pub use level::Gradient;
+/// Which gradient of a piecewise linear F enters the normalisation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Gradient {
+    /// That of F on the sample's own simplex.
+    Element,
+    /// Taken at the nodes from their neighbours, and interpolated: on a lattice central differences.
+    Recovered,
+}

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 use serde::Serialize;
 
-use crate::fit::Scene;
+use crate::fit::cascade::Scene;
 
 /// The axis of the file that points to the sky.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]

@@ -11,7 +11,7 @@
 //! let cloud = Scene::new(SceneKind::Torus, 1).points(20_000, 0.001, 1);
 //! let (mesh, report) = plan(&cloud, &ReconstructParams::default(), &())?.run(&())?;
 //! assert!(mesh.triangles.len() > 1000);
-//! assert_eq!(report.plan.scene, zeroset::fit::Scene::Object);
+//! assert_eq!(report.plan.scene, zeroset::fit::cascade::Scene::Object);
 //! # Ok::<(), zeroset::reconstruct::ReconstructError>(())
 //! ```
 
@@ -26,7 +26,7 @@ pub use plan::{AttributeChoice, Plan, PlanReport, ReconstructParams, Resolution,
 pub use run::{ReconstructReport, StageSeconds};
 pub use scene::SceneEvidence;
 
-use crate::fit::FitError;
+use crate::fit::cascade::FitError;
 use crate::monitor::Cancelled;
 
 /// A reconstruction that could not be made. Each message names the remedy.

@@ -7,7 +7,7 @@ use super::frame::Frame;
 use super::scene::SceneEvidence;
 use super::{ReconstructError, Up};
 use crate::cloud::{Cloud, Spacing, noise};
-use crate::fit::{FitError, FitParams, Prepared, Scene};
+use crate::fit::cascade::{FitError, FitParams, Prepared, Scene};
 use crate::monitor::{Monitor, check};
 use crate::spatial::PointTree;
 

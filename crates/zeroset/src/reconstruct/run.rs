@@ -11,7 +11,7 @@ use super::frame::Frame;
 use super::{Plan, PlanReport, ReconstructError};
 use crate::cloud::Cloud;
 use crate::contour::{ColumnOutline, ContourReport, contour};
-use crate::fit::{self, FitReport, Scene};
+use crate::fit::cascade::{self, FitReport, Scene};
 use crate::mesh::Mesh;
 use crate::monitor::{Monitor, Steps, check};
 use crate::spatial::PointTree;
@@ -105,7 +105,7 @@ impl<'a> Watch<'a> {
     const POLYGONS_A_CELL: usize = 5;
 
     fn new(monitor: &'a dyn Monitor, occupied_cells: usize) -> Self {
-        let steps = Steps::new(monitor, fit::SHARE..AFTER_CONTOUR, Self::POLYGONS_A_CELL * occupied_cells);
+        let steps = Steps::new(monitor, cascade::SHARE..AFTER_CONTOUR, Self::POLYGONS_A_CELL * occupied_cells);
         Self { steps, polygons: AtomicUsize::new(0), cancelled: AtomicBool::new(false) }
     }
 

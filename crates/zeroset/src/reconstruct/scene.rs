@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 use serde::Serialize;
 
-use crate::fit::Scene;
+use crate::fit::cascade::Scene;
 
 /// What the shape of a cloud says.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]

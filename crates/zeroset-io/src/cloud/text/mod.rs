@@ -21,6 +21,7 @@ use crate::format::sniff;
 pub(crate) use layout::Convention;
 use layout::{Layout, Prelude};
 use parse::{Block, Problem, parse_block};
+pub(crate) use parse::{Tokens, has_decimal_commas, is_comment};
 
 /// Text is cut into pieces of about this size, whatever the number of threads: the result cannot depend on it.
 const PIECE: usize = 1 << 20;

@@ -86,7 +86,7 @@ pub(super) fn parse_block(
             }
             return Err(Problem::Columns { line, found: tokens.len(), needed: width });
         }
-        if has_decimal_commas(content) {
+        if has_decimal_commas(content, 3) {
             return Err(Problem::DecimalComma { line });
         }
         let number = |column: usize| {
@@ -152,18 +152,18 @@ pub(super) fn trimmed(line: &[u8]) -> &[u8] {
     line.trim_ascii()
 }
 
-pub(super) fn is_comment(line: &[u8]) -> bool {
+pub(crate) fn is_comment(line: &[u8]) -> bool {
     line.starts_with(b"#") || line.starts_with(b"//") || line.starts_with(b"%")
 }
 
-/// Whether the first three fields between spaces or semicolons are numbers, one of them at least like `1,5`.
-fn has_decimal_commas(line: &[u8]) -> bool {
+/// Whether the first fields between spaces or semicolons, as many as there are coordinates, are numbers, one of them at least like `1,5`.
+pub(crate) fn has_decimal_commas(line: &[u8], coordinates: usize) -> bool {
     if !line.contains(&b',') {
         return false;
     }
     let mut fields = line.split(|b| *b == b';' || b.is_ascii_whitespace()).filter(|field| !field.is_empty());
     let mut commas = 0;
-    for _ in 0..3 {
+    for _ in 0..coordinates {
         let Some(field) = fields.next() else { return false };
         let field = field.strip_prefix(b"-").unwrap_or(field);
         let mut parts = field.split(|b| *b == b',');
@@ -183,13 +183,13 @@ fn has_decimal_commas(line: &[u8]) -> bool {
 ///
 /// With one separator, that alone stands between fields, unless it is quoted. Without, it is space, commas or semicolons
 /// in any mixture: space around a comma or semicolon belongs to it, and two of these in a row have an empty field between.
-pub(super) struct Tokens<'a> {
+pub(crate) struct Tokens<'a> {
     rest: Option<&'a [u8]>,
     separator: Option<u8>,
 }
 
 impl<'a> Tokens<'a> {
-    pub(super) fn new(line: &'a [u8], separator: Option<u8>) -> Self {
+    pub(crate) fn new(line: &'a [u8], separator: Option<u8>) -> Self {
         // A tab at the start has an empty field before it.
         let line = if separator == Some(b'\t') { line } else { line.trim_ascii() };
         Self { rest: (!line.is_empty()).then_some(line), separator }
@@ -283,15 +283,17 @@ mod tests {
 
     #[test]
     fn decimal_commas_are_told_from_separators() {
-        assert!(has_decimal_commas(b"1,5;-2,5;3,5"));
-        assert!(has_decimal_commas(b"1,5 2,5 3,5 7"));
+        assert!(has_decimal_commas(b"1,5;-2,5;3,5", 3));
+        assert!(has_decimal_commas(b"1,5 2,5 3,5 7", 3));
         // Whole numbers among them.
-        assert!(has_decimal_commas(b"100 200,25 3"));
-        assert!(has_decimal_commas(b"-100,5;200;3"));
-        assert!(!has_decimal_commas(b"1,2,3"));
-        assert!(!has_decimal_commas(b"1, 2, 3"));
-        assert!(!has_decimal_commas(b"1,2 3"));
-        assert!(!has_decimal_commas(b"1,2,3 4 5"));
-        assert!(!has_decimal_commas(b"1.5 2.5 3.5"));
+        assert!(has_decimal_commas(b"100 200,25 3", 3));
+        assert!(has_decimal_commas(b"-100,5;200;3", 3));
+        assert!(!has_decimal_commas(b"1,2,3", 3));
+        assert!(!has_decimal_commas(b"1, 2, 3", 3));
+        assert!(!has_decimal_commas(b"1,2 3", 3));
+        assert!(!has_decimal_commas(b"1,2,3 4 5", 3));
+        assert!(!has_decimal_commas(b"1.5 2.5 3.5", 3));
+        assert!(has_decimal_commas(b"1,5;2,5", 2));
+        assert!(!has_decimal_commas(b"1,5", 2));
     }
 }

@@ -7,13 +7,14 @@ use serde::Serialize;
 use super::eigen_seed::eigenvectors;
 use super::free::{is_clear, potentials, turn_outward};
 use super::gradient::{gradient_lengths, linearise, thin_share};
-use super::level::{FixedFaces, Gradient, Level, LevelParams, Nodes};
+use super::level::{FixedFaces, Level, LevelParams, Nodes};
 use super::operator::{apply, energy};
 use super::prolong::{Solved, band, complete, prolong};
 use super::seed::boundary_potential;
 use super::solve::{SolveParams, conjugate_gradients};
 use crate::domain::{Cells, Lattice, LatticeError, LatticePoints};
 use crate::field::LatticeField;
+use crate::fit::Gradient;
 use crate::monitor::{Cancelled, Monitor, check};
 
 /// What is known about the scene before it is fitted. It decides how the sign of F is seeded.

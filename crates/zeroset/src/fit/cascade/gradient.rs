@@ -10,11 +10,12 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::level::{Gradient, Level};
-use super::operator::{LANES, row_at};
+use super::level::Level;
+use super::operator::{LANES, Real, row_at};
 use super::prior::{AIR, GAMMA};
 use super::samples::Sample;
 use crate::domain::{Halo, NONE, TETRAHEDRA, gather, halo_index, mask_row, neighbor_code};
+use crate::fit::Gradient;
 
 /// Nodes 0..=8 along each axis: those that the samples of one block reach.
 const REACH: usize = 9 * 9 * 9;
@@ -23,7 +24,7 @@ const RIM: usize = REACH - 512;
 
 /// What one block's samples give to the nodes they reach, x + 9 y + 81 z: the vector sum of w b n of the recovered gradients by
 /// component, or the finished right-hand side of the element gradients as the last one.
-type Splat = [[f32; REACH]; 4];
+type Splat<T> = [[T; REACH]; 4];
 
 /// The components of a [`Splat`] that a gradient fills.
 fn components(gradient: Gradient) -> Range<usize> {
@@ -47,12 +48,12 @@ fn rim_index(x: usize, y: usize, z: usize) -> usize {
 ///
 /// `vectors` is scratch for the three components; `rhs` receives the right-hand side div(sum w n delta) + gamma t at the free
 /// nodes. Both in a fixed order: a block's own samples, then those of the seven blocks before it.
-pub(super) fn linearise(level: &Level, f: &[f32], mut vectors: [&mut [f32]; 3], rhs: &mut [f32]) -> f64 {
-    let (rims, partial): (Vec<Box<[f32]>>, Vec<f64>) = by_block(&mut vectors, rhs)
+pub(super) fn linearise<T: Real>(level: &Level, f: &[T], mut vectors: [&mut [T]; 3], rhs: &mut [T]) -> f64 {
+    let (rims, partial): (Vec<Box<[T]>>, Vec<f64>) = by_block(&mut vectors, rhs)
         .enumerate()
         .with_min_len(8)
         .map_init(
-            || ([0.0; 2304], [[0.0; REACH]; 4]),
+            || ([T::default(); 2304], [[T::default(); REACH]; 4]),
             |(halo, splat), (b, out)| own_samples(level, b, f, halo, splat, out),
         )
         .unzip();
@@ -63,10 +64,10 @@ pub(super) fn linearise(level: &Level, f: &[f32], mut vectors: [&mut [f32]; 3], 
 }
 
 /// The three components and the right-hand side of each block.
-fn by_block<'a>(
-    [x, y, z]: &'a mut [&mut [f32]; 3],
-    rhs: &'a mut [f32],
-) -> impl IndexedParallelIterator<Item = [&'a mut [f32]; 4]> {
+fn by_block<'a, T: Real>(
+    [x, y, z]: &'a mut [&mut [T]; 3],
+    rhs: &'a mut [T],
+) -> impl IndexedParallelIterator<Item = [&'a mut [T]; 4]> {
     x.par_chunks_exact_mut(512)
         .zip(y.par_chunks_exact_mut(512))
         .zip(z.par_chunks_exact_mut(512).zip(rhs.par_chunks_exact_mut(512)))
@@ -75,8 +76,8 @@ fn by_block<'a>(
 
 /// The gradient at a sample, in cells.
 #[inline(always)]
-fn gradient_at(halo: &Halo<f32>, sample: &Sample, gradient: Gradient) -> [f32; 3] {
-    let mut g = [0.0; 3];
+fn gradient_at<T: Real>(halo: &Halo<T>, sample: &Sample, gradient: Gradient) -> [T; 3] {
+    let mut g = [T::default(); 3];
     let nodes = nodes_of(sample);
     match gradient {
         Gradient::Element => {
@@ -87,7 +88,7 @@ fn gradient_at(halo: &Halo<f32>, sample: &Sample, gradient: Gradient) -> [f32; 3
         Gradient::Recovered => {
             for (at, weight) in nodes.into_iter().zip(sample.barycentric) {
                 for (axis, step) in [1, 16, 192].into_iter().enumerate() {
-                    g[axis] += 0.5 * weight * (halo[at + step] - halo[at - step]);
+                    g[axis] += T::from(0.5 * weight) * (halo[at + step] - halo[at - step]);
                 }
             }
         }
@@ -108,16 +109,17 @@ fn nodes_of(sample: &Sample) -> [usize; 4] {
 
 /// Sums one block's samples; returns sum w |g|. The transpose of [`gradient_at`] begins here: for the recovered gradient vectors are summed, and
 /// differences taken later; for the element's the differences are taken at once and fill the last component.
-fn splat_block(halo: &Halo<f32>, samples: &[Sample], gradient: Gradient, splat: &mut Splat) -> f64 {
+fn splat_block<T: Real>(halo: &Halo<T>, samples: &[Sample], gradient: Gradient, splat: &mut Splat<T>) -> f64 {
     let mut sum = 0.0_f64;
     for sample in samples {
         let g = gradient_at(halo, sample, gradient);
-        let length = (g[0] * g[0] + g[1] * g[1] + g[2] * g[2]).sqrt();
-        if length <= 0.0 {
+        let length = (g[0] * g[0] + g[1] * g[1] + g[2] * g[2]).root();
+        if length <= T::default() {
             continue;
         }
-        sum += f64::from(sample.weight * length);
-        let n = g.map(|c| sample.weight * (c / length));
+        let weight = T::from(sample.weight);
+        sum += (weight * length).into();
+        let n = g.map(|c| weight * (c / length));
         let local = sample.local;
         let origin = usize::from(local & 7) + 9 * usize::from(local >> 3 & 7) + 81 * usize::from(local >> 6);
         let tetrahedron = TETRAHEDRA[usize::from(sample.tetrahedron)];
@@ -133,7 +135,7 @@ fn splat_block(halo: &Halo<f32>, samples: &[Sample], gradient: Gradient, splat: 
             Gradient::Recovered => {
                 for (node, weight) in nodes.into_iter().zip(sample.barycentric) {
                     for axis in 0..3 {
-                        splat[axis][node] += weight * n[axis];
+                        splat[axis][node] += T::from(weight) * n[axis];
                     }
                 }
             }
@@ -143,25 +145,25 @@ fn splat_block(halo: &Halo<f32>, samples: &[Sample], gradient: Gradient, splat: 
 }
 
 /// Gives block `b` what its own samples bear; returns what they give to the blocks after it, and sum w |g|.
-fn own_samples(
+fn own_samples<T: Real>(
     level: &Level,
     b: usize,
-    f: &[f32],
-    halo: &mut Halo<f32>,
-    splat: &mut Splat,
-    mut out: [&mut [f32]; 4],
-) -> (Box<[f32]>, f64) {
+    f: &[T],
+    halo: &mut Halo<T>,
+    splat: &mut Splat<T>,
+    mut out: [&mut [T]; 4],
+) -> (Box<[T]>, f64) {
     let components = components(level.gradient);
     let d = level.data_block[b];
     if d == NONE {
-        out.iter_mut().for_each(|component| component.fill(0.0));
+        out.iter_mut().for_each(|component| component.fill(T::default()));
         return (Box::default(), 0.0);
     }
-    gather::<f32, 1, 2>(f, &level.blocks.neighbors[b], 0.0, halo);
-    splat[components.clone()].fill([0.0; REACH]);
+    gather::<T, 1, 2>(f, &level.blocks.neighbors[b], T::default(), halo);
+    splat[components.clone()].fill([T::default(); REACH]);
     let sum = splat_block(halo, &level.samples.of_block[d as usize], level.gradient, splat);
-    out[3].fill(0.0);
-    let mut rim = vec![0.0; components.len() * RIM].into_boxed_slice();
+    out[3].fill(T::default());
+    let mut rim = vec![T::default(); components.len() * RIM].into_boxed_slice();
     for (c, rim) in components.zip(rim.chunks_exact_mut(RIM)) {
         for (row, own) in out[c].chunks_exact_mut(8).enumerate() {
             let from = 9 * (row & 7) + 81 * (row >> 3);
@@ -179,7 +181,7 @@ fn own_samples(
 }
 
 /// Adds to block `b` what the samples of the seven blocks before it give to its first layers.
-fn add_rims(level: &Level, b: usize, rims: &[Box<[f32]>], out: [&mut [f32]; 4]) {
+fn add_rims<T: Real>(level: &Level, b: usize, rims: &[Box<[T]>], out: [&mut [T]; 4]) {
     for before in 1..8_usize {
         let step: [i32; 3] = std::array::from_fn(|a| -((before >> a & 1) as i32));
         let other = level.blocks.neighbors[b][neighbor_code(step)];
@@ -201,13 +203,13 @@ fn add_rims(level: &Level, b: usize, rims: &[Box<[f32]>], out: [&mut [f32]; 4]) 
 
 /// Ends the transpose of [`gradient_at`]: adds to `rhs` the sum over axes of (V(q - e) - V(q + e)) / 2 and gamma t, all at the free
 /// nodes. Returns gamma sum t F.
-fn right_hand_side(level: &Level, f: &[f32], vectors: [&[f32]; 3], rhs: &mut [f32]) -> f64 {
+fn right_hand_side<T: Real>(level: &Level, f: &[T], vectors: [&[T]; 3], rhs: &mut [T]) -> f64 {
     let partial: Vec<f64> = rhs
         .par_chunks_exact_mut(512)
         .enumerate()
         .with_min_len(8)
         .map_init(
-            || [0.0_f32; 2304],
+            || [T::default(); 2304],
             |halo, (b, rhs)| {
                 let free = &level.free[b];
                 let neighbors = &level.blocks.neighbors[b];
@@ -218,12 +220,12 @@ fn right_hand_side(level: &Level, f: &[f32], vectors: [&[f32]; 3], rhs: &mut [f3
                     for row in 0..64 {
                         let lanes = &LANES[mask_row(free, row & 7, row >> 3) as usize];
                         for k in 0..8 {
-                            rhs[row * 8 + k] *= lanes[k];
+                            rhs[row * 8 + k] *= T::from(lanes[k]);
                         }
                     }
                 }
                 level.prior.as_ref().map_or(0.0, |prior| {
-                    let mut told = 0.0_f32;
+                    let mut told = T::default();
                     for row in 0..64 {
                         let (y, z) = (row & 7, row >> 3);
                         let (air, solid) = (mask_row(&prior.air[b], y, z), mask_row(&prior.solid[b], y, z));
@@ -231,12 +233,12 @@ fn right_hand_side(level: &Level, f: &[f32], vectors: [&[f32]; 3], rhs: &mut [f3
                             continue;
                         }
                         for k in 0..8 {
-                            let target = GAMMA * AIR * (LANES[air as usize][k] - LANES[solid as usize][k]);
+                            let target = T::from(GAMMA * AIR * (LANES[air as usize][k] - LANES[solid as usize][k]));
                             rhs[row * 8 + k] += target;
                             told += target * f[b * 512 + row * 8 + k];
                         }
                     }
-                    f64::from(told)
+                    told.into()
                 })
             },
         )
@@ -244,14 +246,14 @@ fn right_hand_side(level: &Level, f: &[f32], vectors: [&[f32]; 3], rhs: &mut [f3
     partial.into_iter().sum()
 }
 
-fn add_differences(vectors: [&[f32]; 3], neighbors: &[u32; 27], halo: &mut Halo<f32>, rhs: &mut [f32]) {
+fn add_differences<T: Real>(vectors: [&[T]; 3], neighbors: &[u32; 27], halo: &mut Halo<T>, rhs: &mut [T]) {
     for (v, step) in vectors.into_iter().zip([1, 16, 192]) {
-        gather::<f32, 1, 1>(v, neighbors, 0.0, halo);
+        gather::<T, 1, 1>(v, neighbors, T::default(), halo);
         for row in 0..64 {
             let at = halo_index(0, (row & 7) as i32, (row >> 3) as i32);
             let (before, after) = (row_at(halo, at - step), row_at(halo, at + step));
             for k in 0..8 {
-                rhs[row * 8 + k] += 0.5 * (before[k] - after[k]);
+                rhs[row * 8 + k] += T::from(0.5) * (before[k] - after[k]);
             }
         }
     }

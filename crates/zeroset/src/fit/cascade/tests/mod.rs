@@ -1,15 +1,18 @@
 //! What the mathematics promises: transposes, symmetry, exact prolongation, whole bands, and an R that never rises.
 
+mod reference;
+
 use super::eigen_seed::eigenvectors;
 use super::free::turn_outward;
 use super::gradient::linearise;
-use super::level::{FixedFaces, Gradient, Level, LevelParams, Nodes};
+use super::level::{FixedFaces, Level, LevelParams, Nodes};
 use super::operator::{apply, energy};
 use super::prior::{AIR, GAMMA};
 use super::prolong::{Solved, band, complete, prolong};
 use super::solve::{SolveParams, conjugate_gradients};
 use super::{FitParams, LevelReport, Scene, fit};
 use crate::domain::{Blocks, Cells, Lattice, LatticePoints, TETRAHEDRA, barycentric, dilate, mask_get, tetrahedron_of};
+use crate::fit::Gradient;
 use crate::sample::{Chance, Scene as Sample, SceneKind};
 
 const ALPHA: f32 = 4.0;

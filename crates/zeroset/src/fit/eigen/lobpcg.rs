@@ -1,4 +1,4 @@
-//! The first eigenvectors of a large symmetric pencil K x = lambda M x, for the seed of free scenes.
+//! The first eigenvectors of a large symmetric pencil K x = lambda M x.
 //!
 //! # What
 //! The vectors of smallest x'Kx / x'Mx, with K positive definite and M positive semidefinite, possibly of low rank. Asked the
@@ -10,7 +10,7 @@
 //! problem is solved in an orthonormal basis of the span, from which nearly dependent directions are dropped.
 //!
 //! # Cost
-//! A step on n unknowns for k vectors takes k solves of at most [`INNER_STEPS`] steps and O(k^2 n) for the products.
+//! A step on n unknowns for k vectors takes k solves of at most [`Accuracy::inner_steps`] steps and O(k^2 n) for the products.
 //!
 //! # Guaranteed
 //! Theta never falls from step to step but for rounding. Vectors are worked on in parallel and sums are taken by one
@@ -26,35 +26,51 @@
 use nalgebra::{DMatrix, SymmetricEigen};
 use rayon::prelude::*;
 
+use super::dot;
 use crate::monitor::{Cancelled, Monitor, check};
 
 /// A symmetric pencil, applied without being stored.
-pub(super) trait Pencil: Sync {
+pub(crate) trait Pencil: Sync {
     /// y = K x.
     fn stiffness(&self, x: &[f64], y: &mut [f64]);
     /// y = M x.
     fn mass(&self, x: &[f64], y: &mut [f64]);
     /// The diagonal of K, for Jacobi's preconditioner.
     fn diagonal(&self) -> &[f64];
+    /// Solutions of K w = r for each r, as rough as may be.
+    fn corrections(&self, residuals: Vec<Vec<f64>>, accuracy: &Accuracy) -> Vec<Vec<f64>>
+    where
+        Self: Sized,
+    {
+        residuals.into_par_iter().map(|r| solve(self, r, accuracy.inner, accuracy.inner_steps)).collect()
+    }
+}
+
+/// How far to go.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Accuracy {
+    /// Most steps.
+    pub(crate) steps: usize,
+    /// The end: the first theta rose by no more than this share ...
+    pub(crate) at_rest: f64,
+    /// ... and the others asked for by no more than this one.
+    pub(crate) others_at_rest: f64,
+    /// A correction is solved to this share of its right-hand side.
+    pub(crate) inner: f64,
+    /// Most steps of conjugate gradients for one correction.
+    pub(crate) inner_steps: usize,
 }
 
 /// Eigenvectors, the best first.
-pub(super) struct Eigenpairs {
+pub(crate) struct Eigenpairs {
     /// x'Kx / x'Mx, ascending.
-    #[cfg_attr(not(test), expect(dead_code, reason = "the order of the vectors is what the seed takes"))]
-    pub(super) values: Vec<f64>,
+    pub(crate) values: Vec<f64>,
     /// With x'Kx = 1.
-    pub(super) vectors: Vec<Vec<f64>>,
+    pub(crate) vectors: Vec<Vec<f64>>,
+    /// Whether the vectors asked for came to rest before the steps ran out.
+    pub(crate) at_rest: bool,
 }
 
-/// Most steps.
-const STEPS: usize = 40;
-/// Most steps of conjugate gradients for one correction.
-const INNER_STEPS: usize = 150;
-/// A correction is solved to this share of its right-hand side.
-const INNER: f64 = 0.05;
-/// The end: no theta rose by more than this share.
-const AT_REST: f64 = 1e-4;
 /// Directions whose share of the basis is smaller, by their eigenvalue in its Gram matrix of unit columns, are dropped.
 const DEPENDENT: f64 = 1e-12;
 
@@ -106,38 +122,49 @@ impl Block {
     }
 }
 
-/// The `start.len()` eigenvectors of smallest x'Kx / x'Mx.
+/// The eigenvectors of smallest x'Kx / x'Mx, as many as there are starts. The end is reached when the first `wanted` are at rest.
 ///
 /// # Errors
 /// If the monitor asks to stop.
-pub(super) fn smallest(
+pub(crate) fn smallest(
     pencil: &impl Pencil,
     start: Vec<Vec<f64>>,
+    wanted: usize,
+    accuracy: &Accuracy,
     monitor: &dyn Monitor,
 ) -> Result<Eigenpairs, Cancelled> {
-    let wanted = start.len();
-    let (mut block, mut theta, _) = rayleigh_ritz(&Block::new(pencil, start), wanted);
+    let width = start.len();
+    if width == 0 {
+        return Ok(Eigenpairs { values: Vec::new(), vectors: Vec::new(), at_rest: true });
+    }
+    let (mut block, mut theta, _) = rayleigh_ritz(&Block::new(pencil, start), width);
     let mut directions = Block::default();
-    for _ in 0..STEPS {
+    let mut rests = false;
+    for _ in 0..accuracy.steps {
         check(monitor)?;
-        let corrections: Vec<Vec<f64>> =
-            (0..theta.len()).into_par_iter().map(|j| correction(pencil, &block, j, theta[j])).collect();
+        let residual = |j: usize| block.mx[j].iter().zip(&block.kx[j]).map(|(m, k)| m - theta[j] * k).collect();
+        let corrections = pencil.corrections((0..theta.len()).map(residual).collect(), accuracy);
         if corrections.is_empty() {
+            rests = true;
             break;
         }
         let own = block.x.len();
         let mut span = block;
         span.append(Block::new(pencil, corrections));
         span.append(directions);
-        let (next, found, coefficients) = rayleigh_ritz(&span, wanted);
+        let (next, found, coefficients) = rayleigh_ritz(&span, width);
         directions = span.combined(&coefficients, own);
-        let rests = found.len() == theta.len() && found.iter().zip(&theta).all(|(n, o)| n - o <= AT_REST * n);
+        let at_rest = |k: usize| {
+            let share = if k == 0 { accuracy.at_rest } else { accuracy.others_at_rest };
+            found[k] - theta[k] <= share * found[k]
+        };
+        rests = found.len() == theta.len() && (0..wanted.min(found.len())).all(at_rest);
         (block, theta) = (next, found);
         if rests {
             break;
         }
     }
-    Ok(Eigenpairs { values: theta.iter().map(|t| 1.0 / t).collect(), vectors: block.x })
+    Ok(Eigenpairs { values: theta.iter().map(|t| 1.0 / t).collect(), vectors: block.x, at_rest: rests })
 }
 
 /// The best vectors of a span, their theta, and their coefficients. Fewer than `wanted` if the span bears no more with theta > 0.
@@ -168,15 +195,9 @@ fn rayleigh_ritz(span: &Block, wanted: usize) -> (Block, Vec<f64>, DMatrix<f64>)
     (span.combined(&coefficients, 0), theta, coefficients)
 }
 
-/// A rough solution of K w = M x - theta K x for vector `j`.
-fn correction(pencil: &impl Pencil, block: &Block, j: usize, theta: f64) -> Vec<f64> {
-    let residual = block.mx[j].iter().zip(&block.kx[j]).map(|(m, k)| m - theta * k).collect();
-    solve(pencil, residual, INNER, INNER_STEPS)
-}
-
 /// K w = r by conjugate gradients with Jacobi's preconditioner, to a residual of `tolerance` times the first in the
 /// preconditioner's norm.
-pub(super) fn solve(pencil: &impl Pencil, mut r: Vec<f64>, tolerance: f64, most: usize) -> Vec<f64> {
+pub(crate) fn solve(pencil: &impl Pencil, mut r: Vec<f64>, tolerance: f64, most: usize) -> Vec<f64> {
     let scaled = |r: &[f64]| -> Vec<f64> { r.iter().zip(pencil.diagonal()).map(|(r, d)| r / d).collect() };
     let mut w = vec![0.0; r.len()];
     let mut q = w.clone();
@@ -209,23 +230,13 @@ fn add_multiple(sum: &mut [f64], factor: f64, x: &[f64]) {
     }
 }
 
-/// Eight partial sums, so that the processor need not wait for each addition; their order is fixed.
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut lanes = [0.0; 8];
-    let (a, rest_a) = a.as_chunks::<8>();
-    let (b, rest_b) = b.as_chunks::<8>();
-    for (a, b) in a.iter().zip(b) {
-        for k in 0..8 {
-            lanes[k] += a[k] * b[k];
-        }
-    }
-    lanes.iter().sum::<f64>() + rest_a.iter().zip(rest_b).map(|(a, b)| a * b).sum::<f64>()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::sample::Chance;
+
+    const ACCURACY: Accuracy =
+        Accuracy { steps: 40, at_rest: 1e-4, others_at_rest: 1e-4, inner: 0.05, inner_steps: 150 };
 
     struct Dense {
         k: DMatrix<f64>,
@@ -279,7 +290,7 @@ mod tests {
             let mut exact: Vec<f64> =
                 (&inverse * &pencil.m * inverse.transpose()).symmetric_eigenvalues().iter().copied().collect();
             exact.sort_by(|a, b| b.total_cmp(a));
-            let found = smallest(&pencil, start(n, wanted), &()).expect("nobody cancels");
+            let found = smallest(&pencil, start(n, wanted), wanted, &ACCURACY, &()).expect("nobody cancels");
             assert_eq!(found.values.len(), found.vectors.len());
             // With rank 2 only two quotients are finite; others may be there as rounding.
             for (value, exact) in found.values.iter().zip(&exact).take(rank.min(wanted)) {

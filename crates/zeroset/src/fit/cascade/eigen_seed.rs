@@ -19,7 +19,7 @@
 //! it even.
 //!
 //! # Cost
-//! At most 40 nodes across; see [`super::eigen`]. Sums are taken in a fixed order.
+//! At most 40 nodes across; see [`crate::fit::eigen`]. Sums are taken in a fixed order.
 //!
 //! # Guaranteed
 //! The same vectors bit for bit on any number of threads. Neither normals nor any other knowledge enters.
@@ -31,11 +31,11 @@
 //! # Source
 //! Taubin 1991 for the normalisation by squared gradients; its use on a lattice with order 2: design of this project.
 
-use super::eigen::{Eigenpairs, Pencil, smallest, solve};
 use super::level::Level;
 use super::samples::Sample;
 use super::stencil::STEPS;
 use crate::domain::{Blocks, TETRAHEDRA, block_of_key};
+use crate::fit::eigen::lobpcg::{Accuracy, Eigenpairs, Pencil, smallest, solve};
 use crate::monitor::{Cancelled, Monitor};
 use crate::sample::Chance;
 
@@ -48,8 +48,8 @@ const SMOOTHNESS: f64 = 1e-3;
 const MASS: f64 = 1e-9;
 /// Eigenvectors taken. The steps with p = 1 then choose by R. On the five bodies the first has always won; on a city it is another.
 const VECTORS: usize = 4;
-/// The start is rough: it is smoothed by one solve.
-const START: (f64, usize) = (0.05, 150);
+/// Vectors good to a few per cent serve: the steps that follow go on from there.
+const ACCURACY: Accuracy = Accuracy { steps: 40, at_rest: 1e-4, others_at_rest: 1e-4, inner: 0.05, inner_steps: 150 };
 
 /// The nodes of a dense level in plain order, x fastest.
 struct Grid {
@@ -242,9 +242,9 @@ pub(super) fn eigenvectors(level: &Level, alpha: f64, monitor: &dyn Monitor) -> 
             let noise: Vec<f64> = (0..n).map(|_| chance.normal()).collect();
             let mut image = vec![0.0; n];
             pencil.mass(&noise, &mut image);
-            solve(&pencil, image, START.0, START.1)
+            solve(&pencil, image, ACCURACY.inner, ACCURACY.inner_steps)
         })
         .collect();
-    let Eigenpairs { vectors, .. } = smallest(&pencil, start, monitor)?;
+    let Eigenpairs { vectors, .. } = smallest(&pencil, start, VECTORS, &ACCURACY, monitor)?;
     Ok(vectors.into_iter().map(|v| pencil.grid.to_blocks(&level.blocks, &v)).collect())
 }

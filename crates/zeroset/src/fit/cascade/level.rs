@@ -1,13 +1,13 @@
 //! One level of the cascade: which nodes exist, which may move, and what the data say about them.
 
 use rayon::prelude::*;
-use serde::Serialize;
 
 use super::prior::{Columns, Prior};
 use super::prolong::Solved;
 use super::samples::Samples;
 use super::stencil::Stencil;
 use crate::domain::{Blocks, Cells, Lattice, LatticePoints, Mask, NONE};
+use crate::fit::Gradient;
 
 /// Which faces of the box hold F fixed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -52,16 +52,6 @@ impl FixedFaces {
         }
         mask
     }
-}
-
-/// Which gradient enters N.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Gradient {
-    /// That of F on the sample's own tetrahedron.
-    Element,
-    /// Central differences at the nodes, interpolated.
-    Recovered,
 }
 
 /// A level, ready to be solved on.

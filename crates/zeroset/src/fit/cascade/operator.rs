@@ -1,6 +1,6 @@
 //! The operator A = alpha B'WB + L + gamma, applied block by block, and the energy E(F) = F'AF.
 
-use std::ops::{Add, AddAssign, Mul, Sub};
+use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Sub, SubAssign};
 
 use rayon::prelude::*;
 
@@ -19,22 +19,34 @@ pub(super) trait Real:
     + Add<Output = Self>
     + Sub<Output = Self>
     + Mul<Output = Self>
+    + Div<Output = Self>
     + AddAssign
+    + SubAssign
+    + MulAssign
     + From<f32>
     + Into<f64>
 {
     fn of(value: f64) -> Self;
+    fn root(self) -> Self;
 }
 
 impl Real for f32 {
     fn of(value: f64) -> Self {
         value as Self
     }
+
+    fn root(self) -> Self {
+        self.sqrt()
+    }
 }
 
 impl Real for f64 {
     fn of(value: f64) -> Self {
         value
+    }
+
+    fn root(self) -> Self {
+        self.sqrt()
     }
 }
 
