@@ -7,7 +7,7 @@ use super::Minimum;
 pub enum Warning {
     /// Functions that no datum and no smoothness says anything about. They were left out.
     #[error(
-        "{count} functions touch no data and were left out, the first of them {first}: F is not known there; take fewer cells, or smoothness of order 1 or 2"
+        "{count} of the functions touch no data and were left out, the first of them {first}: F is not known there; take fewer cells, or smoothness of order 1 or 2"
     )]
     Unconstrained {
         /// How many.
