@@ -40,7 +40,7 @@ fn sampled<const D: usize>(basis: &dyn Basis<D>, points: &[[f64; D]], weight: f6
 #[test]
 fn a_segment_is_the_limit_of_dense_points() {
     fn check<const D: usize>(mesh: &SimplicialMesh<D>) {
-        const COUNT: usize = 20_000;
+        const COUNT: usize = 100_000;
         let mut ends = [[0.03; D], [0.96; D]];
         (ends[0][1], ends[1][0]) = (0.41, 0.87);
         let weight = 2.5;
@@ -53,7 +53,7 @@ fn a_segment_is_the_limit_of_dense_points() {
             data.segment(ends, weight).unwrap();
             let dense = sampled(&*basis, &points, weight * distance(ends[0], ends[1]) / COUNT as f64);
             // At each face the products have a kink of the slope of some 10 per length; the midpoint rule is off by an eighth of it
-            // times the square of the step, 3e-9, and entries are some 0.1.
+            // times the square of the step, 1e-10, and entries are some 0.1.
             let off = difference(&gram(&*basis, &data), &dense);
             assert!(off < 1e-6, "D {D}, degree {degree}: {off}");
         }
