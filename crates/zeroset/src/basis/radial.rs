@@ -14,7 +14,7 @@
 //! Kernels alone neither sum to 1 nor reproduce polynomials; a [`Tail`] of polynomials beside them does.
 
 use super::{Basis, Derivatives, Terms};
-use crate::domain::{Place, SimplicialMesh};
+use crate::domain::{Place, SimplicialMesh, bounds};
 
 /// A function of the distance to a centre. Widths are lengths.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -182,13 +182,7 @@ impl<const D: usize> Radial<D> {
         if let Some(pair) = order.windows(2).find(|p| centres[p[0]] == centres[p[1]]) {
             return Err(RadialError::Equal { centres: [pair[0], pair[1]] });
         }
-        let (mut low, mut high) = ([f64::INFINITY; D], [f64::NEG_INFINITY; D]);
-        for v in domain.vertices() {
-            for a in 0..D {
-                low[a] = low[a].min(v[a]);
-                high[a] = high[a].max(v[a]);
-            }
-        }
+        let (low, high) = bounds(domain.vertices().iter().copied());
         let middle = std::array::from_fn(|a| 0.5 * (low[a] + high[a]));
         let half_side = (0..D).map(|a| 0.5 * (high[a] - low[a])).fold(0.0, f64::max);
         Ok(Self { domain, kernel, centres, tail, middle, half_side })

@@ -18,6 +18,7 @@
 //! Freudenthal 1942; Kuhn 1960. The stiffness identity is classical; it is a test here.
 
 mod blocks;
+mod bounds;
 mod gather;
 mod kuhn;
 mod lattice;
@@ -27,10 +28,12 @@ mod points;
 mod simplicial;
 
 pub use blocks::{BLOCK_NODES, Blocks, NONE, block_key, block_of_key, neighbor_code};
+pub(crate) use bounds::bounds;
 pub(crate) use gather::{Halo, gather, halo_index, replicate_at_domain_faces};
 pub use kuhn::{TETRAHEDRA, Tetrahedron, barycentric, tetrahedron_of};
 pub use lattice::{Lattice, LatticeError};
 pub use mask::{Mask, dilate, dilate_box, mask_get, mask_row, mask_set};
 pub(crate) use mask::{shift, shifted};
 pub use points::{Cells, LatticePoints};
+pub(crate) use simplicial::polygon_area;
 pub use simplicial::{Barycentric, DomainError, FacetPiece, Place, SegmentPiece, SimplicialMesh};

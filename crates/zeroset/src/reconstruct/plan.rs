@@ -175,7 +175,7 @@ pub fn plan<'a>(
         Spacing::with_tree(cloud, &tree).ok_or(ReconstructError::Degenerate { shape: "in one place" })?.median;
     let noise = noise(cloud, &tree).unwrap_or(0.0);
     drop(tree);
-    let (low, high) = bounds(&cloud.points);
+    let (low, high) = crate::domain::bounds(cloud.points.iter().copied());
     let extent = (0..3).map(|a| high[a] - low[a]).fold(0.0, f64::max);
     if params.resolution == Resolution::Auto && extent > ASTRAY * spacing {
         return Err(ReconstructError::Astray { extent, spacing });
@@ -277,12 +277,6 @@ fn expected_bytes(cells: usize, points: usize) -> f64 {
 fn screening_for(noise: f64, resolution: f64) -> f64 {
     let [least, most] = SCREENING;
     (FitParams::SCREENING * (NOISE_REL * resolution / noise).powi(2)).clamp(least, most)
-}
-
-fn bounds(points: &[[f64; 3]]) -> ([f64; 3], [f64; 3]) {
-    points.iter().fold(([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]), |(low, high), p| {
-        (std::array::from_fn(|a| low[a].min(p[a])), std::array::from_fn(|a| high[a].max(p[a])))
-    })
 }
 
 /// Whether all points lie on one line, but for rounding: the second eigenvalue of their covariance is nothing against the first.

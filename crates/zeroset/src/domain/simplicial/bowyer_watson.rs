@@ -34,7 +34,7 @@ pub(super) fn tetrahedra(sites: &[[f64; 3]]) -> Option<Vec<u32>> {
 
 /// The sites in the order of the Morton curve.
 fn along_curve(sites: &[[f64; 3]]) -> Vec<u32> {
-    let (low, high) = super::buckets::bounds(sites.iter().copied());
+    let (low, high) = crate::domain::bounds(sites.iter().copied());
     let longest = (0..3).map(|a| high[a] - low[a]).fold(0.0, f64::max);
     let scale = if longest > 0.0 { f64::from((1_u32 << 21) - 1) / longest } else { 0.0 };
     let code = |site: [f64; 3]| morton::encode(std::array::from_fn(|a| ((site[a] - low[a]) * scale) as u32));

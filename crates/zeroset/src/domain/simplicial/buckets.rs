@@ -2,6 +2,8 @@
 
 use std::collections::VecDeque;
 
+use crate::domain::bounds;
+
 /// Simplices by where they are.
 #[derive(Debug, Clone)]
 pub(super) struct Locator<const D: usize> {
@@ -246,11 +248,4 @@ impl<const D: usize> Locator<D> {
         let crossed = (0..D).map(|a| (to[a] - from[a]).abs() * self.scale[a]).fold(1.0, f64::max);
         crossed.min(2.0 * MOST).ceil() as usize
     }
-}
-
-/// The box around points.
-pub(super) fn bounds<const D: usize>(points: impl Iterator<Item = [f64; D]>) -> ([f64; D], [f64; D]) {
-    points.fold(([f64::INFINITY; D], [f64::NEG_INFINITY; D]), |(low, high), p| {
-        (std::array::from_fn(|a| low[a].min(p[a])), std::array::from_fn(|a| high[a].max(p[a])))
-    })
 }

@@ -22,7 +22,7 @@ pub(super) fn orient<const D: usize>(vertices: &[[f64; D]], corners: &mut [u32])
         if let Some(&vertex) = corners.iter().find(|v| **v as usize >= count) {
             return Err(DomainError::VertexMissing { simplex, vertex, count });
         }
-        match sign(orientation(&positions(vertices, corners)[..=D])) {
+        match sign(orientation(&super::positions(vertices, corners)[..=D])) {
             Ordering::Greater => {}
             Ordering::Less => corners.swap(D - 1, D),
             Ordering::Equal => return Err(DomainError::Degenerate { simplex, corners: corners.to_vec() }),
@@ -52,11 +52,6 @@ pub(super) fn conforming<const D: usize>(mesh: &SimplicialMesh<D>) -> Result<(),
     }
 }
 
-/// The positions of the corners of a simplex; the last is unused in the plane.
-fn positions<const D: usize>(vertices: &[[f64; D]], corners: &[u32]) -> [[f64; D]; 4] {
-    std::array::from_fn(|c| corners.get(c).map_or([0.0; D], |&v| vertices[v as usize]))
-}
-
 /// A simplex with all that a comparison needs.
 struct Corners<'a, const D: usize> {
     vertices: &'a [u32],
@@ -72,7 +67,7 @@ impl<'a, const D: usize> Corners<'a, D> {
     }
 
     fn bounds(&self) -> ([f64; D], [f64; D]) {
-        super::buckets::bounds(self.positions[..=D].iter().copied())
+        crate::domain::bounds(self.positions[..=D].iter().copied())
     }
 
     /// Whether a corner of another simplex is one of this.

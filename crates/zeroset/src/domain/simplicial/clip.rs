@@ -1,7 +1,7 @@
 //! Segments and facets cut at the faces of the mesh.
 
 use super::SimplicialMesh;
-use super::buckets::bounds;
+use crate::domain::bounds;
 
 /// A part of a segment that lies in one simplex.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -93,7 +93,7 @@ impl<const D: usize> SimplicialMesh<D> {
     #[must_use]
     pub fn clip_triangle(&self, corners: [[f64; D]; 3]) -> Vec<FacetPiece<D>> {
         let mut pieces = Vec::new();
-        let whole = area(&corners);
+        let whole = polygon_area(&corners);
         if whole.is_nan() || whole <= 0.0 || whole.is_infinite() {
             return pieces;
         }
@@ -117,12 +117,14 @@ impl<const D: usize> SimplicialMesh<D> {
             let taken = (first..simplices.len()).filter(|&k| near(&boxes[k])).find_map(|k| {
                 let simplex = simplices[k] as usize;
                 let (part, rest) = self.take(simplex, &polygon)?;
-                (area(&part) > NO_AREA * whole).then_some((k, simplex, part, rest))
+                (polygon_area(&part) > NO_AREA * whole).then_some((k, simplex, part, rest))
             });
             let Some((k, simplex, part, rest)) = taken else { continue };
             left.extend(rest.into_iter().rev().map(|polygon| (polygon, k + 1)));
             let fan = (1..part.len() - 1).map(|i| [part[0], part[i], part[i + 1]]);
-            pieces.extend(fan.filter(|corners| area(corners) > 0.0).map(|corners| FacetPiece { simplex, corners }));
+            pieces.extend(
+                fan.filter(|corners| polygon_area(corners) > 0.0).map(|corners| FacetPiece { simplex, corners }),
+            );
         }
         pieces.sort_by_key(|piece| piece.simplex);
         pieces
@@ -182,7 +184,7 @@ fn split<const D: usize>(polygon: &[[f64; D]], heights: &[f64]) -> [Polygon<D>; 
 }
 
 /// The area of a polygon that is flat and convex.
-pub(super) fn area<const D: usize>(polygon: &[[f64; D]]) -> f64 {
+pub(crate) fn polygon_area<const D: usize>(polygon: &[[f64; D]]) -> f64 {
     (1..polygon.len().saturating_sub(1))
         .map(|i| {
             let side = |k: usize| -> [f64; D] { std::array::from_fn(|a| polygon[k][a] - polygon[0][a]) };

@@ -1,8 +1,8 @@
 //! Which simplex holds a point.
 
-use super::buckets::bounds;
 use super::predicates::holds;
 use super::{Barycentric, Place, SimplicialMesh};
+use crate::domain::bounds;
 
 /// A barycentric coordinate that differs from zero by less counts as zero: the point lies on the face.
 ///
@@ -72,8 +72,7 @@ impl<const D: usize> SimplicialMesh<D> {
 
     /// The positions of the corners of a simplex; the last is unused in the plane.
     pub(super) fn corner_positions(&self, simplex: usize) -> [[f64; D]; 4] {
-        let corners = self.simplex(simplex);
-        std::array::from_fn(|c| corners.get(c).map_or([0.0; D], |&v| self.vertices[v as usize]))
+        super::positions(&self.vertices, self.simplex(simplex))
     }
 
     /// What counts as zero among the barycentric coordinates of a simplex.

@@ -43,6 +43,7 @@ mod predicates;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use clip::polygon_area;
 pub use clip::{FacetPiece, SegmentPiece};
 
 use adjacency::Adjacency;
@@ -306,6 +307,11 @@ impl<const D: usize> SimplicialMesh<D> {
         }
         (0..self.vertices.len() as u32).filter(|&v| on_rim[v as usize]).collect()
     }
+}
+
+/// The positions of the corners of a simplex; the last is unused in the plane.
+fn positions<const D: usize>(vertices: &[[f64; D]], corners: &[u32]) -> [[f64; D]; 4] {
+    std::array::from_fn(|c| corners.get(c).map_or([0.0; D], |&v| vertices[v as usize]))
 }
 
 /// The gradients of the barycentric coordinates of a simplex, and its volume.

@@ -12,7 +12,7 @@ use super::operator::{apply, energy};
 use super::prolong::{Solved, band, complete, prolong};
 use super::seed::boundary_potential;
 use super::solve::{SolveParams, conjugate_gradients};
-use crate::domain::{Cells, Lattice, LatticeError, LatticePoints};
+use crate::domain::{Cells, Lattice, LatticeError, LatticePoints, bounds};
 use crate::field::LatticeField;
 use crate::fit::Gradient;
 use crate::monitor::{Cancelled, Monitor, check};
@@ -192,7 +192,7 @@ impl Prepared {
     /// # Errors
     /// If the lattice cannot be made.
     pub fn new(points: &[[f64; 3]], params: &FitParams) -> Result<Self, LatticeError> {
-        let (low, high) = bounds(points);
+        let (low, high) = bounds(points.iter().copied());
         let lattice = Lattice::around(low, high, params.resolution, params.padding_rel)?;
         let points = LatticePoints::new(&lattice, points);
         let occupied_cells = Cells::new(&lattice, &points, lattice.finest).len();
@@ -237,17 +237,6 @@ pub fn fit(
     monitor: &dyn Monitor,
 ) -> Result<(LatticeField, FitReport), FitError> {
     Prepared::new(points, params)?.fit(monitor)
-}
-
-fn bounds(points: &[[f64; 3]]) -> ([f64; 3], [f64; 3]) {
-    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-    for p in points {
-        for a in 0..3 {
-            low[a] = low[a].min(p[a]);
-            high[a] = high[a].max(p[a]);
-        }
-    }
-    (low, high)
 }
 
 struct Cascade<'a> {

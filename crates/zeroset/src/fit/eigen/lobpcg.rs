@@ -42,7 +42,7 @@ pub(crate) trait Pencil: Sync {
     where
         Self: Sized,
     {
-        residuals.into_par_iter().map(|r| solve(self, r, accuracy.inner, accuracy.inner_steps)).collect()
+        rough_solutions(self, residuals, accuracy)
     }
 }
 
@@ -193,6 +193,11 @@ fn rayleigh_ritz(span: &Block, wanted: usize) -> (Block, Vec<f64>, DMatrix<f64>)
     let theta = order.iter().map(|&i| ritz.eigenvalues[i]).collect();
     let coefficients = basis * DMatrix::from_fn(kept.len(), order.len(), |i, j| ritz.eigenvectors[(i, order[j])]);
     (span.combined(&coefficients, 0), theta, coefficients)
+}
+
+/// Solutions of K w = r for each r by a few steps of conjugate gradients.
+pub(super) fn rough_solutions(pencil: &impl Pencil, residuals: Vec<Vec<f64>>, accuracy: &Accuracy) -> Vec<Vec<f64>> {
+    residuals.into_par_iter().map(|r| solve(pencil, r, accuracy.inner, accuracy.inner_steps)).collect()
 }
 
 /// K w = r by conjugate gradients with Jacobi's preconditioner, to a residual of `tolerance` times the first in the

@@ -4,7 +4,6 @@ use super::lobpcg::{self, Accuracy};
 use super::{Factor, Matrix, Pencil, dot};
 use crate::monitor::{Cancelled, Monitor};
 use crate::sample::Chance;
-use rayon::prelude::*;
 
 /// Vectors iterated beyond those asked for. They quicken the last ones asked for.
 const GUARDS: usize = 3;
@@ -76,10 +75,7 @@ impl lobpcg::Pencil for Shifted<'_> {
     fn corrections(&self, residuals: Vec<Vec<f64>>, accuracy: &Accuracy) -> Vec<Vec<f64>> {
         match &self.factor {
             Some(factor) => factor.solve_all(residuals),
-            None => {
-                let solve = |r| lobpcg::solve(self, r, accuracy.inner, accuracy.inner_steps);
-                residuals.into_par_iter().map(solve).collect()
-            }
+            None => lobpcg::rough_solutions(self, residuals, accuracy),
         }
     }
 }

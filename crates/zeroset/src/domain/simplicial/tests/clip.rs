@@ -1,7 +1,7 @@
 //! Pieces sum to the whole.
 
 use super::super::SimplicialMesh;
-use super::super::clip::area;
+use super::super::clip::polygon_area as area;
 use super::{filled_box, grid, random, turned};
 
 fn assert_near<const D: usize>(mesh: &SimplicialMesh<D>, simplex: usize, position: [f64; D]) {

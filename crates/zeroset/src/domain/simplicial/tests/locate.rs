@@ -77,7 +77,7 @@ fn flat_cells_neither_lose_points_nor_claim_those_of_others() {
     for position in random::<3>(9, 3000).into_iter().map(turned) {
         let place = mesh.locate(position).expect("the point lies in the mesh");
         let corners = mesh.corner_positions(place.simplex);
-        let (low, high) = super::super::buckets::bounds(corners.into_iter());
+        let (low, high) = crate::domain::bounds(corners.into_iter());
         assert!((0..3).all(|a| low[a] - 1e-12 <= position[a] && position[a] <= high[a] + 1e-12));
     }
 }

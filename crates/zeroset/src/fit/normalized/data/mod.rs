@@ -10,7 +10,7 @@ pub use polygon::PolygonError;
 
 use crate::basis::Basis;
 use crate::basis::quadrature::rule;
-use crate::domain::{Place, SimplicialMesh};
+use crate::domain::{Place, SimplicialMesh, polygon_area};
 
 /// What kind of thing a datum is.
 #[derive(Debug, Clone, PartialEq)]
@@ -122,7 +122,9 @@ impl<const D: usize> Data<D> {
         let (all_finite, extent) = match &shape {
             Shape::Point(p) => (finite(&[*p]), 1.0),
             Shape::Line(line) => (finite(line), line.windows(2).map(|w| length([w[0], w[1]])).sum()),
-            Shape::Facet(triangles) => (triangles.iter().all(|t| finite(t)), triangles.iter().map(area).sum()),
+            Shape::Facet(triangles) => {
+                (triangles.iter().all(|t| finite(t)), triangles.iter().map(|t| polygon_area(t)).sum())
+            }
         };
         if !all_finite {
             return Err(DataError::NotFinite { datum });
@@ -303,22 +305,16 @@ impl<const D: usize> Sampler<'_, D> {
     fn triangle(&mut self, corners: &[[f64; D]; 3], datum: u32) -> f64 {
         let rule = rule::<2>(self.degree);
         for piece in self.domain.clip_triangle(*corners) {
-            let part = area(&piece.corners);
+            let part = polygon_area(&piece.corners);
             for node in &rule {
                 self.sample(piece.simplex, node.position(&piece.corners), node.weight * part, datum);
             }
         }
-        area(corners)
+        polygon_area(corners)
     }
 }
 
 /// The length of a segment.
 fn length<const D: usize>([p, q]: [[f64; D]; 2]) -> f64 {
     (0..D).map(|a| (q[a] - p[a]).powi(2)).sum::<f64>().sqrt()
-}
-
-/// The area of a triangle.
-fn area<const D: usize>([p, q, r]: &[[f64; D]; 3]) -> f64 {
-    let lift = |v: &[f64; D]| -> [f64; 3] { std::array::from_fn(|a| if a < D { v[a] - p[a] } else { 0.0 }) };
-    0.5 * crate::vec3::norm(crate::vec3::cross(lift(q), lift(r)))
 }

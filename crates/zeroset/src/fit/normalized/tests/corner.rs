@@ -4,7 +4,6 @@ use crate::basis::{Basis, P1, P2};
 use crate::contour::{Branches, zero_lines, zero_surface};
 use crate::domain::SimplicialMesh;
 use crate::fit::normalized::{Data, NormalizedFit};
-use crate::mesh::Mesh;
 use crate::sample::Chance;
 
 fn dot<const D: usize>(a: [f64; D], b: [f64; D]) -> f64 {
@@ -76,10 +75,16 @@ fn two_noisy_lines_meet_in_a_corner_that_quadratics_hold_and_linears_cut() {
     }
 }
 
-/// Positions on the zero set: the vertices of its surface, and where F is linear all over its triangles, some hundredths apart.
-fn positions(surface: &Mesh, linear: bool) -> Vec<[f64; 3]> {
-    if !linear {
-        return surface.vertices.clone();
+/// Positions on the zero set of the fit to points, of the parts with data: the vertices of its surface, and where F is linear all over
+/// its triangles, some hundredths apart.
+fn positions(basis: &dyn Basis<3>, points: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    let mut data = Data::new();
+    data.points(points, 1.0).unwrap();
+    let fitted = NormalizedFit::new(basis, &data).run().unwrap();
+    let places: Vec<_> = data.samples(basis).unwrap().iter().map(|s| s.place).collect();
+    let surface = zero_surface(&fitted.function(basis), 5, Branches::WithData(&places));
+    if basis.degree() != Some(1) {
+        return surface.vertices;
     }
     let dense = surface.triangles.iter().map(|t| t.map(|v| surface.vertices[v as usize])).flat_map(|[p, q, r]| {
         let longest = [minus(p, q), minus(q, r), minus(r, p)].map(|d| dot(d, d).sqrt()).into_iter().fold(0.0, f64::max);
@@ -117,14 +122,8 @@ fn two_noisy_planes_meet_in_an_edge_that_quadratics_hold_and_linears_cut() {
         let largest_noise = measured(points.iter().copied(), corner, &normals, |_| 0.0).farthest;
         let domain = SimplicialMesh::from_tetrahedra(vertices.clone(), &[[0, 1, 2, 3]]).unwrap();
         let errors = |basis: &dyn Basis<3>| {
-            let mut data = Data::new();
-            data.points(&points, 1.0).unwrap();
-            let fitted = NormalizedFit::new(basis, &data).run().unwrap();
-            let places: Vec<_> = data.samples(basis).unwrap().iter().map(|s| s.place).collect();
-            let surface = zero_surface(&fitted.function(basis), 5, Branches::WithData(&places));
             // Where there are data: far from them planes are extrapolated.
-            let linear = basis.degree() == Some(1);
-            let near = positions(&surface, linear).into_iter().filter(|&p| {
+            let near = positions(basis, &points).into_iter().filter(|&p| {
                 let along = dot(minus(p, corner), edge);
                 let out = arms.map(|arm| dot(minus(p, corner), arm));
                 (-0.3..0.7).contains(&along) && out.iter().all(|&o| o < 0.5)
@@ -163,14 +162,9 @@ fn three_noisy_planes_meet_in_a_corner_that_quadratics_only_near() {
     let largest_noise = points.iter().map(|&p| off(p)).fold(0.0, f64::max);
     let domain = SimplicialMesh::from_tetrahedra(vertices, &[[0, 1, 2, 3]]).unwrap();
     let errors = |basis: &dyn Basis<3>| {
-        let mut data = Data::new();
-        data.points(&points, 1.0).unwrap();
-        let fitted = NormalizedFit::new(basis, &data).run().unwrap();
-        let places: Vec<_> = data.samples(basis).unwrap().iter().map(|s| s.place).collect();
-        let surface = zero_surface(&fitted.function(basis), 5, Branches::WithData(&places));
         let near = |p: &[f64; 3]| arms.iter().all(|&arm| (-0.1..0.5).contains(&dot(minus(*p, corner), arm)));
         let start = Errors { farthest: 0.0, at_corner: f64::INFINITY };
-        positions(&surface, basis.degree() == Some(1)).into_iter().filter(near).fold(start, |errors, p| {
+        positions(basis, &points).into_iter().filter(near).fold(start, |errors, p| {
             let d = minus(p, corner);
             Errors { farthest: errors.farthest.max(off(p)), at_corner: errors.at_corner.min(dot(d, d).sqrt()) }
         })
