@@ -2,6 +2,7 @@
 
 use std::io::{IsTerminal, Write};
 
+use crate::args::RunArgs;
 use crate::error::CliError;
 
 /// How much to say beside results and errors.
@@ -16,6 +17,15 @@ pub(crate) enum Console {
 }
 
 impl Console {
+    /// As much as the user asked for.
+    pub(crate) fn of(args: &RunArgs) -> Self {
+        match (args.quiet, args.verbose) {
+            (true, _) => Self::Quiet,
+            (_, true) => Self::Verbose,
+            _ => Self::Normal,
+        }
+    }
+
     /// A line for a user who did not ask for quiet.
     pub(crate) fn say(self, line: &str) {
         if self >= Self::Normal {

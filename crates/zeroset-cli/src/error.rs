@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::fit2d::Fit2dError;
+use zeroset::feature::{CompareFeaturesError, FeatureError};
 use zeroset::mesh::{CompareError, MeshError};
 use zeroset::reconstruct::ReconstructError;
 use zeroset_io::{IoError, shown};
@@ -82,6 +83,30 @@ pub(crate) enum CliError {
     MeshToStream {
         /// The suffixes that are known.
         known: String,
+    },
+    /// Two results for standard output.
+    #[error("standard output: named as both {first} and {second}; name a file for one of them")]
+    BothToStream {
+        /// What it is first.
+        first: &'static str,
+        /// What it is, too.
+        second: &'static str,
+    },
+    /// Features cannot be found.
+    #[error("{inputs}: {source}")]
+    Features {
+        /// The inputs, in words.
+        inputs: String,
+        /// Why.
+        source: FeatureError,
+    },
+    /// Features cannot be compared for a reason of its own.
+    #[error("{}: {source}", shown(path))]
+    CompareFeatures {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: CompareFeaturesError,
     },
     /// The threads cannot be started.
     #[error("the threads cannot be started: {0}; give fewer --threads")]

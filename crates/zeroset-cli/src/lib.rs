@@ -18,8 +18,10 @@ mod compare;
 mod completions;
 mod console;
 mod error;
+mod features;
 mod fit2d;
 mod info;
+mod input;
 mod interrupt;
 mod memory;
 mod progress;
@@ -27,6 +29,7 @@ mod reconstruct;
 mod report;
 mod sample;
 mod table;
+mod threads;
 
 /// Compiles the examples of the README.
 #[cfg(doctest)]
@@ -77,6 +80,7 @@ pub fn main(words: impl IntoIterator<Item = OsString>) -> ExitCode {
 fn run(command: Command) -> Result<(), CliError> {
     match command {
         Command::Reconstruct(args) => reconstruct::run(&args),
+        Command::Features(args) => features::run(&args),
         Command::Fit2d(args) => fit2d::run(&args),
         Command::Sample(args) => sample::run(&args),
         Command::Compare(args) => compare::run(&args),

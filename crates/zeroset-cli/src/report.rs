@@ -7,70 +7,20 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
-use zeroset::cloud::Cloud;
 use zeroset::contour::ContourReport;
 use zeroset::fit::cascade::FitReport;
 use zeroset::mesh::{DroppedComponents, Mesh, drop_small_components};
 use zeroset::reconstruct::{PlanReport, ReconstructParams, ReconstructReport};
-use zeroset_io::{IoError, MeshFormat, ReadReport, WriteReport, shown, write_atomically};
+use zeroset_io::{IoError, MeshFormat, WriteReport, shown, write_atomically};
 
 use crate::args::ReconstructArgs;
 use crate::console::Console;
 use crate::error::CliError;
+use crate::input::{Input, Origin, is_stream};
 use crate::memory;
 
 /// Version of the report's shape.
 const SCHEMA_VERSION: u32 = 1;
-
-/// The points that are used, and where they come from.
-#[derive(Debug)]
-pub(crate) struct Input {
-    /// The points used.
-    pub(crate) cloud: Cloud,
-    /// What reading found out.
-    pub(crate) read: ReadReport,
-    /// What was to be left out.
-    pub(crate) filters: Filters,
-    /// What was left out.
-    pub(crate) dropped: Dropped,
-    /// Sentences that every user should read.
-    pub(crate) warnings: Vec<String>,
-}
-
-/// Which points were to be used.
-#[derive(Debug, Clone, Serialize)]
-pub(crate) struct Filters {
-    /// Only these classes.
-    pub(crate) classes: Option<Vec<u8>>,
-    /// None of these classes.
-    pub(crate) exclude: Vec<u8>,
-    /// Lowest and highest value on each axis; null where open.
-    pub(crate) bounds: Option<[[Option<f64>; 2]; 3]>,
-    /// Size of the groups of strays.
-    pub(crate) outliers: Option<usize>,
-}
-
-/// How many points were left out, and why.
-#[derive(Debug, Clone, Copy, Serialize)]
-pub(crate) struct Dropped {
-    /// A coordinate was not finite.
-    pub(crate) non_finite: u64,
-    /// The file marks them as deleted.
-    pub(crate) withheld: u64,
-    /// By `--classes` and `--exclude`.
-    pub(crate) by_class: u64,
-    /// By `--bounds`.
-    pub(crate) by_bounds: u64,
-    /// By `--outliers`.
-    pub(crate) isolated: u64,
-}
-
-impl Dropped {
-    /// All of them.
-    pub(crate) fn total(&self) -> u64 {
-        self.non_finite + self.withheld + self.by_class + self.by_bounds + self.isolated
-    }
-}
 
 /// Wall seconds of each stage.
 #[derive(Debug, Clone, Copy, Default, Serialize)]
@@ -140,26 +90,6 @@ impl OutputReport {
     }
 }
 
-/// One input file.
-#[derive(Debug, Serialize)]
-struct Source {
-    path: String,
-    format: &'static str,
-    points: u64,
-    non_finite: u64,
-    withheld: u64,
-    /// What the file holds beside positions.
-    attributes: Vec<&'static str>,
-}
-
-#[derive(Debug, Serialize)]
-struct Points {
-    declared: Option<u64>,
-    read: u64,
-    dropped: Dropped,
-    used: usize,
-}
-
 #[derive(Debug, Serialize)]
 struct Counts {
     vertices: usize,
@@ -171,14 +101,8 @@ struct Counts {
 pub(crate) struct Report<'a> {
     schema_version: u32,
     zeroset_version: &'static str,
-    inputs: Vec<Source>,
-    points: Points,
-    filters: &'a Filters,
-    notes: Vec<&'a str>,
-    crs: Option<&'a str>,
-    unit: Option<&'static str>,
-    unit_metres: Option<f64>,
-    world_from_local: [f64; 3],
+    #[serde(flatten)]
+    origin: Origin<'a>,
     plan: &'a PlanReport,
     /// Null if nothing but the plan was made.
     fit: Option<&'a FitReport>,
@@ -203,31 +127,10 @@ impl<'a> Report<'a> {
         params: &ReconstructParams,
         seconds: Seconds,
     ) -> Self {
-        let read = &input.read;
-        let source = |source: &zeroset_io::Source| Source {
-            path: shown(&source.path),
-            format: source.format.name(),
-            points: source.points,
-            non_finite: source.non_finite,
-            withheld: source.withheld,
-            attributes: source.attributes.clone(),
-        };
         Self {
             schema_version: SCHEMA_VERSION,
             zeroset_version: env!("CARGO_PKG_VERSION"),
-            inputs: read.sources.iter().map(source).collect(),
-            points: Points {
-                declared: read.points_declared,
-                read: read.points_read,
-                dropped: input.dropped,
-                used: input.cloud.len(),
-            },
-            filters: &input.filters,
-            notes: input.warnings.iter().chain(&read.notes).map(String::as_str).collect(),
-            crs: input.cloud.crs.as_deref(),
-            unit: read.unit.map(zeroset_io::LinearUnit::name),
-            unit_metres: read.unit.map(zeroset_io::LinearUnit::metres),
-            world_from_local: input.cloud.world_from_local,
+            origin: Origin::of(input),
             plan,
             fit: None,
             contour: None,
@@ -238,7 +141,7 @@ impl<'a> Report<'a> {
             threads: rayon::current_num_threads(),
             memory_limit_bytes: params.memory,
             memory_peak_bytes: memory::peak(),
-            path: args.report.clone(),
+            path: args.run.report.clone(),
         }
     }
 
@@ -272,22 +175,26 @@ impl<'a> Report<'a> {
 
     /// Whether the report is what standard output is for.
     pub(crate) fn goes_to_stdout(&self) -> bool {
-        self.path.as_deref() == Some(Path::new("-"))
+        self.path.as_deref().is_some_and(is_stream)
     }
 
     /// Writes the report where it was asked for, if it was.
     pub(crate) fn write(&self) -> Result<(), CliError> {
-        let Some(path) = &self.path else { return Ok(()) };
-        let text = to_json(self);
-        if self.goes_to_stdout() {
-            return Console::print(&text);
-        }
-        let fill = |out: &mut std::io::BufWriter<std::fs::File>| {
-            out.write_all(text.as_bytes()).map_err(|source| IoError::from_system(path, source))
-        };
-        write_atomically::<IoError>(path, fill)?;
-        Ok(())
+        self.path.as_ref().map_or(Ok(()), |path| write_json(path, self))
     }
+}
+
+/// Writes JSON to a file, or to standard output for `-`.
+pub(crate) fn write_json(path: &Path, value: &impl Serialize) -> Result<(), CliError> {
+    let text = to_json(value);
+    if is_stream(path) {
+        return Console::print(&text);
+    }
+    let fill = |out: &mut std::io::BufWriter<std::fs::File>| {
+        out.write_all(text.as_bytes()).map_err(|source| IoError::from_system(path, source))
+    };
+    write_atomically::<IoError>(path, fill)?;
+    Ok(())
 }
 
 /// JSON for people and programs, with a line end.

@@ -7,7 +7,7 @@ use zeroset_io::{CloudFormat, MeshFormat, WriteOptions, check_writable, write_cl
 
 use crate::args::SampleArgs;
 use crate::error::CliError;
-use crate::reconstruct::refuse_same;
+use crate::input::refuse_same;
 
 pub(crate) fn run(args: &SampleArgs) -> Result<(), CliError> {
     check(args)?;

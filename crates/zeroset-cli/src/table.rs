@@ -1,5 +1,8 @@
 //! Plain tables and numbers for people.
 
+use serde::Serialize;
+use zeroset_io::LinearUnit;
+
 /// Rows of words in columns: the first column to the left, all others to the right.
 pub(crate) fn columns(rows: &[Vec<String>]) -> String {
     let count = rows.iter().map(Vec::len).max().unwrap_or(0);
@@ -70,6 +73,23 @@ pub(crate) fn position(p: [f64; 3], decimals: usize) -> String {
 /// Decimals that show a thousandth of a length.
 pub(crate) fn decimals_for(length: f64) -> usize {
     if length > 0.0 && length.is_finite() { (3.0 - length.log10()).floor().clamp(0.0, 9.0) as usize } else { 3 }
+}
+
+/// The name under which a choice is typed.
+pub(crate) fn name(choice: impl Serialize) -> String {
+    let typed = serde_json::to_value(choice).ok();
+    typed.as_ref().and_then(serde_json::Value::as_str).unwrap_or("?").replace("minus_", "-")
+}
+
+/// A length with its unit, where that is known.
+pub(crate) fn length(value: f64, unit: Option<LinearUnit>) -> String {
+    let unit = match unit {
+        Some(LinearUnit::Metre) => " m",
+        Some(LinearUnit::Foot) => " ft",
+        Some(LinearUnit::UsSurveyFoot) => " US survey ft",
+        _ => "",
+    };
+    format!("{}{unit}", significant(value, 4))
 }
 
 #[cfg(test)]

@@ -11,7 +11,7 @@ use common::{folder, line, run, zeroset};
 fn help_tells_what_there_is() {
     let folder = folder();
     let help = line(folder.path(), "--help").ok().stdout;
-    for command in ["reconstruct", "fit2d", "sample", "compare", "info", "completions"] {
+    for command in ["reconstruct", "features", "fit2d", "sample", "compare", "info", "completions"] {
         assert!(help.contains(command), "{command}");
         let own = line(folder.path(), &format!("{command} --help")).ok().stdout;
         assert!(own.contains("Usage: zeroset"), "{own}");
@@ -38,6 +38,10 @@ fn help_tells_what_there_is() {
         "--verbose",
         "--dry-run",
     ] {
+        assert!(own.contains(option), "{option}");
+    }
+    let own = line(folder.path(), "features --help").ok().stdout;
+    for option in ["--scene", "--min-area", "--max-distance", "--max-angle", "--sharp-angle", "--bounds", "--report"] {
         assert!(own.contains(option), "{option}");
     }
     assert!(line(folder.path(), "-V").ok().stdout.contains(env!("CARGO_PKG_VERSION")));
@@ -69,6 +73,23 @@ fn wrong_usage_exits_with_2() {
         "sample torus -o out.xyz --points 0",
         "compare a.ply",
         "compare a.ply b.ply --sharp-angle 200",
+        "compare --features a.json",
+        "compare --features a.json b.ply c.ply",
+        "compare --features a.json b.ply --samples 100",
+        "compare --features a.json b.ply --min-points 3",
+        "compare a.ply b.ply --cloud c.xyz",
+        "compare a.ply b.ply --corner-tolerance 1",
+        "features",
+        "features in.xyz",
+        "features in.xyz -o out.json --min-area 0",
+        "features in.xyz -o out.json --max-distance -1",
+        "features in.xyz -o out.json --max-angle 90",
+        "features in.xyz -o out.json --sharp-angle 180",
+        "features in.xyz -o out.json --scene moon",
+        "features in.xyz -o out.json --classes 256",
+        "features in.xyz -o out.json --memory much",
+        "features in.xyz -o out.json --quiet --verbose",
+        "features in.xyz -o out.json --resolution 1",
         "info",
     ] {
         let outcome = line(folder.path(), words);
@@ -90,7 +111,7 @@ fn manual_pages_tell_every_option() {
     use clap::CommandFactory;
     let folder = folder();
     clap_mangen::generate_to(zeroset_cli::args::Args::command(), folder.path()).unwrap();
-    let commands = ["reconstruct", "fit2d", "sample", "compare", "info", "completions"];
+    let commands = ["reconstruct", "features", "fit2d", "sample", "compare", "info", "completions"];
     for command in commands {
         let page = std::fs::read_to_string(folder.path().join(format!("zeroset-{command}.1"))).unwrap();
         assert!(page.contains(".SH SYNOPSIS"), "{page}");

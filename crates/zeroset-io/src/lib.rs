@@ -1,9 +1,10 @@
-//! Point cloud and mesh formats for `zeroset`.
+//! Formats of point clouds, meshes and features for `zeroset`.
 //!
 //! | | read | written |
 //! |---|---|---|
 //! | clouds | LAS, LAZ (COPC too), PLY, XYZ / TXT / CSV / ASC, PTS, PCD, E57 | LAS, LAZ, PLY, XYZ / TXT / CSV / ASC, PTS |
 //! | meshes | PLY, OBJ, STL, OFF, GLB | PLY, OBJ, STL, OFF, GLB |
+//! | features | JSON | JSON, GeoJSON, OBJ, PLY, DXF |
 //! | data in the plane | JSON, CSV | JSON |
 //!
 //! ```no_run
@@ -28,6 +29,7 @@
 
 pub mod cloud;
 mod error;
+pub mod features;
 mod format;
 mod guard;
 mod input;
@@ -42,6 +44,7 @@ pub use cloud::{
     read_clouds, write_cloud,
 };
 pub use error::{IoError, shown};
+pub use features::{FeatureFile, FeatureFormat, FeatureOutput, read_features, read_features_bytes, write_features};
 pub use format::{CloudFormat, MeshFormat};
 pub use mesh::{WriteOptions, WriteReport, read_mesh, read_mesh_bytes, write_mesh};
 pub use output::{abandon_writes, check_writable, write_atomically};

@@ -36,6 +36,11 @@ fn write_seeds() {
     let planar = r#"{"points":[[1,2],[3,4,0.5]],"segments":[[[0,0],[1,1]]],"polygons":[[[0,0],[1,0],[0,1]]],
         "domain":{"vertices":[[0,0],[1,0],[0,1]],"triangles":[[0,1,2]]}}"#;
     write("planar_json".into(), "sound", planar.into());
+    let features = r#"{"schema_version":1,"zeroset_version":"0.1.0","crs":"EPSG:28992","unit":"metre","planes":[{"id":0,
+        "normal":[0,0,1],"offset":2,"oriented":true,"area":0.5,"points":9,"rms":null,"polygon":[[[0,0,2],[1,0,2],[0,1,2]]]}],
+        "edges":[{"id":0,"kind":"convex","planes":[0],"angle":90,"length":1,"polyline":[[0,0,2],[1,0,2]]}],
+        "corners":[{"id":0,"kind":"mixed","position":[0,0,2],"planes":[0],"edges":[0]}],"parameters":{}}"#;
+    write("features_json".into(), "sound", features.into());
     write("planar_csv".into(), "sound", "x,y,weight\n1,2,3\n# c\n4 5;6\n".into());
     let stl = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n";
     write("mesh_stl".into(), "text", stl.into());

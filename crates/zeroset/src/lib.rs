@@ -4,7 +4,7 @@
 //! no normals and no orientation. F is negative inside and positive outside.
 //!
 //! The rooms follow the data: [`cloud`] -> [`domain`] -> [`basis`] -> [`fit`] -> [`field`] -> [`contour`] -> [`mesh`]; [`reconstruct`]
-//! walks through all of them in one call. The remaining
+//! walks through all of them in one call. [`feature`] finds planes, edges and corners. The remaining
 //! rooms serve all of these: [`spatial`] answers nearest-neighbour questions, [`sample`] makes scenes with a known truth, and
 //! [`monitor`] carries progress out and a wish to stop in.
 
@@ -12,6 +12,7 @@ pub mod basis;
 pub mod cloud;
 pub mod contour;
 pub mod domain;
+pub mod feature;
 pub mod field;
 pub mod fit;
 pub mod mesh;

@@ -72,6 +72,33 @@ impl<'a> Steps<'a> {
     }
 }
 
+/// A monitor of a part of a computation: its whole is a range of shares of the other's.
+pub(crate) struct Part<'a> {
+    monitor: &'a dyn Monitor,
+    shares: Range<f64>,
+}
+
+impl<'a> Part<'a> {
+    /// The part from the share `shares.start` to `shares.end`.
+    pub(crate) fn new(monitor: &'a dyn Monitor, shares: Range<f64>) -> Self {
+        Self { monitor, shares }
+    }
+}
+
+impl Monitor for Part<'_> {
+    fn stage(&self, name: &str) {
+        self.monitor.stage(name);
+    }
+
+    fn share(&self, done: f64) {
+        self.monitor.share(self.shares.start + done * (self.shares.end - self.shares.start));
+    }
+
+    fn cancelled(&self) -> bool {
+        self.monitor.cancelled()
+    }
+}
+
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;

@@ -85,6 +85,17 @@ pub(crate) fn normalized(a: Vec3) -> Option<Vec3> {
     Some([b[0] / length, b[1] / length, b[2] / length])
 }
 
+/// Two unit directions that make a right-handed system with a unit normal, which comes last.
+pub(crate) fn axes_across(normal: Vec3) -> [Vec3; 2] {
+    // The axis that the normal points along least gives the longest product.
+    let least = (0..3).fold(0, |best, a| if normal[a].abs() < normal[best].abs() { a } else { best });
+    let mut along = [0.0; 3];
+    along[least] = 1.0;
+    let across = cross(normal, along);
+    let first = scale(across, 1.0 / norm(across));
+    [first, cross(normal, first)]
+}
+
 /// Whether all three components are finite.
 #[inline]
 pub(crate) fn is_finite(a: Vec3) -> bool {

@@ -1,6 +1,9 @@
 //! What can be typed.
 
+mod compare;
+mod features;
 mod fit2d;
+mod shared;
 mod values;
 
 use std::num::NonZeroUsize;
@@ -10,7 +13,10 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Parser, Subcommand, ValueEnum};
 use zeroset::sample::SceneKind;
 
+pub use compare::CompareArgs;
+pub use features::{FeaturesArgs, PostureChoice};
 pub use fit2d::{BasisChoice, BranchesChoice, DomainChoice, Fit2dArgs, NormalizationChoice, SolverChoice};
+pub use shared::{InputArgs, RunArgs, SceneArgs, SceneChoice, UpChoice};
 pub use values::{Bounds, Classes, OrOff, Rectangle};
 
 const EXAMPLES: &str = "\
@@ -39,11 +45,6 @@ Examples:
   zeroset sample airborne-city -o city.laz --points 1000000 --truth city.ply
   zeroset sample box -o - --noise 0 | zeroset reconstruct - -o box.ply";
 
-const COMPARE_EXAMPLES: &str = "\
-Examples:
-  zeroset compare mesh.ply truth.ply
-  zeroset compare mesh.ply truth.obj --tau 0.01 --json";
-
 const INFO_EXAMPLES: &str = "\
 Examples:
   zeroset info tile.laz
@@ -63,46 +64,18 @@ pub struct Args {
 pub enum Command {
     /// Turn raw points into a mesh.
     Reconstruct(Box<ReconstructArgs>),
+    /// Find planes, edges and corners in raw points.
+    Features(Box<FeaturesArgs>),
     /// Fit a curve to points, segments and polygons in the plane, and draw it.
     Fit2d(Box<Fit2dArgs>),
     /// Make a test scene: a cloud, and the exact mesh behind it.
     Sample(SampleArgs),
-    /// Measure how well a mesh agrees with the truth.
+    /// Measure how well a mesh, or features, agree with the truth.
     Compare(CompareArgs),
     /// Show what a cloud or a mesh holds.
     Info(InfoArgs),
     /// Print completions for a shell.
     Completions(CompletionsArgs),
-}
-
-/// The kind of scene.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum SceneChoice {
-    /// Airborne if all inputs are las or laz, else decided from the shape of the cloud.
-    Auto,
-    /// A body seen from all sides: closed.
-    Object,
-    /// Ground and what stands on it.
-    Terrain,
-    /// Terrain scanned from above, with hardly a point on walls.
-    Airborne,
-    /// Nothing is known about inside and outside.
-    Free,
-}
-
-/// The axis that points to the sky.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-#[allow(missing_docs, reason = "the names say it")]
-pub enum UpChoice {
-    X,
-    Y,
-    Z,
-    #[value(name = "-x")]
-    MinusX,
-    #[value(name = "-y")]
-    MinusY,
-    #[value(name = "-z")]
-    MinusZ,
 }
 
 /// Which values of the points the vertices get.
@@ -119,25 +92,16 @@ pub enum AttributesChoice {
 #[derive(Debug, Clone, clap::Args)]
 #[command(after_help = RECONSTRUCT_EXAMPLES)]
 pub struct ReconstructArgs {
-    /// Point clouds, taken together as one; `-` reads lines of x y z from standard input.
-    #[arg(value_name = "INPUT", required = true)]
-    pub inputs: Vec<PathBuf>,
+    /// The points.
+    #[command(flatten)]
+    pub input: InputArgs,
     /// Mesh to write; the suffix tells the format.
     #[arg(short, long, value_name = "FILE", required_unless_present = "dry_run")]
     pub output: Option<PathBuf>,
 
-    /// Kind of scene.
-    #[arg(
-        long,
-        value_name = "KIND",
-        default_value = "auto",
-        hide_possible_values = true,
-        help = "Kind of scene: auto, object, terrain, airborne or free"
-    )]
-    pub scene: SceneChoice,
-    /// Axis that points to the sky: x, y, z, -x, -y or -z.
-    #[arg(long, value_name = "AXIS", default_value = "z", allow_hyphen_values = true, hide_possible_values = true)]
-    pub up: UpChoice,
+    /// What the points show.
+    #[command(flatten)]
+    pub scene: SceneArgs,
     /// Finest cell, in the unit of the input [default: 1.5 times the spacing of the points].
     #[arg(long, value_name = "LENGTH", value_parser = values::positive, conflicts_with = "depth")]
     pub resolution: Option<f64>,
@@ -157,38 +121,12 @@ pub struct ReconstructArgs {
     #[arg(long, value_name = "WHICH", hide_possible_values = true)]
     pub attributes: Option<AttributesChoice>,
 
-    /// Use only these classes, such as 2,6,9 [default: all].
-    #[arg(long, value_name = "LIST", value_parser = values::classes, help_heading = "Points")]
-    pub classes: Option<Classes>,
-    /// Leave these classes out, or `none` [default: 7,18, noise, unless --classes names them].
-    #[arg(long, value_name = "LIST|none", value_parser = values::excluded, help_heading = "Points")]
-    pub exclude: Option<Classes>,
-    /// Use only points in this box of world coordinates.
-    #[arg(help = "Use only points in this box of world coordinates: xmin,ymin,xmax,ymax[,zmin,zmax]",
-        long, value_name = "BOX", value_parser = values::bounds, allow_hyphen_values = true, help_heading = "Points")]
-    pub bounds: Option<Bounds>,
-    /// Drop groups of up to K points that lie far from all others; 8 is usual.
-    #[arg(long, value_name = "off|K", value_parser = values::outliers, default_value = "off", help_heading = "Points")]
-    pub outliers: OrOff<NonZeroUsize>,
-
-    /// Threads to use [default: all]; the mesh does not depend on it.
-    #[arg(long, value_name = "N", value_parser = values::threads, help_heading = "Running")]
-    pub threads: Option<NonZeroUsize>,
-    /// Memory to use at most, such as 4GB [default: 70 % of what is free].
-    #[arg(long, value_name = "SIZE", value_parser = values::size, help_heading = "Running")]
-    pub memory: Option<u64>,
-    /// Write a report of all figures as JSON; `-` is standard output.
-    #[arg(long, value_name = "FILE", help_heading = "Running")]
-    pub report: Option<PathBuf>,
     /// Print what would be done, and the memory that it takes, and write no mesh.
     #[arg(long, help_heading = "Running")]
     pub dry_run: bool,
-    /// Print nothing but errors.
-    #[arg(short, long, conflicts_with = "verbose", help_heading = "Running")]
-    pub quiet: bool,
-    /// Print a table of stages and levels.
-    #[arg(short, long, help_heading = "Running")]
-    pub verbose: bool,
+    /// How to run.
+    #[command(flatten)]
+    pub run: RunArgs,
 }
 
 /// Arguments of `zeroset sample`.
@@ -213,34 +151,6 @@ pub struct SampleArgs {
     /// Write the exact mesh, too.
     #[arg(long, value_name = "FILE")]
     pub truth: Option<PathBuf>,
-}
-
-/// Arguments of `zeroset compare`.
-#[derive(Debug, Clone, clap::Args)]
-#[command(after_help = COMPARE_EXAMPLES)]
-pub struct CompareArgs {
-    /// Mesh to examine.
-    pub mesh: PathBuf,
-    /// What it should be.
-    pub truth: PathBuf,
-    /// Distance within which a sample counts as right [default: 0.002 of the truth's diagonal].
-    #[arg(long, value_name = "LENGTH", value_parser = values::positive)]
-    pub tau: Option<f64>,
-    /// Distance from sharp edges within which samples are counted apart [default: 0.01 of the truth's diagonal].
-    #[arg(long, value_name = "LENGTH", value_parser = values::positive)]
-    pub edge_band: Option<f64>,
-    /// Samples on each surface.
-    #[arg(long, value_name = "N", default_value = "300000")]
-    pub samples: NonZeroUsize,
-    /// Chooses the samples.
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    pub seed: u64,
-    /// Angle from which an edge is sharp, in degrees.
-    #[arg(long, value_name = "DEGREES", value_parser = values::sharp_angle, default_value = "30")]
-    pub sharp_angle: f64,
-    /// Print JSON instead of a table.
-    #[arg(long)]
-    pub json: bool,
 }
 
 /// Arguments of `zeroset info`.

@@ -60,6 +60,11 @@ pub(super) fn sharp_angle(text: &str) -> Result<f64, String> {
     positive(text).and_then(|v| if v < 180.0 { Ok(v) } else { Err("it must be less than 180".into()) })
 }
 
+/// Degrees between two planes, as typed.
+pub(super) fn plane_angle(text: &str) -> Result<f64, String> {
+    positive(text).and_then(|v| if v < 90.0 { Ok(v) } else { Err("it must be less than 90".into()) })
+}
+
 pub(super) fn classes(text: &str) -> Result<Classes, String> {
     let class = |word: &str| {
         let word = word.trim();

@@ -6,7 +6,7 @@ use zeroset_io::{IoError, PlanarFormat, check_writable};
 
 use crate::args::{BasisChoice, DomainChoice, Fit2dArgs};
 use crate::error::CliError;
-use crate::reconstruct::refuse_same;
+use crate::input::refuse_same;
 
 /// What is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,56 +1,50 @@
 //! `zeroset reconstruct`.
 
-mod check;
-mod select;
 mod text;
-
-pub(crate) use check::refuse_same;
 
 use std::time::Instant;
 
+use zeroset::cloud::Cloud;
 use zeroset::fit::cascade::Scene;
 use zeroset::mesh::Mesh;
 use zeroset::reconstruct::{
-    AttributeChoice, Plan, PlanReport, ReconstructError, ReconstructParams, ReconstructReport, Resolution, Trim, Up,
-    plan,
+    AttributeChoice, Plan, PlanReport, ReconstructError, ReconstructParams, ReconstructReport, Resolution, Trim, plan,
 };
-use zeroset_io::{CloudFile, CloudFormat, WriteOptions, read_clouds, shown, write_mesh};
+use zeroset_io::{CloudFormat, MeshFormat, WriteOptions, shown, write_mesh};
 
-use crate::args::{AttributesChoice, OrOff, ReconstructArgs, SceneChoice, UpChoice};
+use crate::args::{AttributesChoice, OrOff, ReconstructArgs, SceneChoice};
 use crate::console::{Console, Lines};
 use crate::error::{CliError, in_words};
+use crate::input::{Input, SURVEYED, announced, check_inputs, check_outputs, is_stream, scene, up};
 use crate::progress::Progress;
-use crate::report::{ComponentsReport, Input, OutputReport, Report, Seconds};
-use crate::{interrupt, memory};
+use crate::report::{ComponentsReport, OutputReport, Report, Seconds};
+use crate::{interrupt, memory, threads};
 
 pub(crate) fn run(args: &ReconstructArgs) -> Result<(), CliError> {
     let start = Instant::now();
-    let console = match (args.quiet, args.verbose) {
-        (true, _) => Console::Quiet,
-        (_, true) => Console::Verbose,
-        _ => Console::Normal,
-    };
-    let formats = check::check(args)?;
+    let console = Console::of(&args.run);
+    let formats = check(args)?;
     let params = params(args, &formats);
-    if let Some(threads) = args.threads {
-        rayon::ThreadPoolBuilder::new().num_threads(threads.get()).build_global()?;
-    }
+    threads::start(&args.run)?;
 
     let progress = Progress::new(console);
-    let mut seconds = Seconds::default();
-    let input = read(args, &progress, &mut seconds)?;
+    let (mut input, reading) = Input::read(&args.input, &progress)?;
+    let mut seconds = Seconds { read: reading.read, select: reading.select, ..Seconds::default() };
     progress.finish();
+    if let Some(warning) = missing_attribute(args, &input.cloud) {
+        input.warnings.insert(0, warning);
+    }
     let mut lines = Lines::new(console);
     input.describe(console, &mut lines);
 
     let progress = Progress::new(console);
-    let failed = |source: ReconstructError| CliError::Reconstruct { inputs: in_words(&args.inputs), source };
+    let failed = |source: ReconstructError| CliError::Reconstruct { inputs: in_words(&args.input.inputs), source };
     let planning = Instant::now();
     let mut plan = interrupt::watched(|| plan(&input.cloud, &params, &progress))?.map_err(failed)?;
     seconds.plan = planning.elapsed().as_secs_f64();
     progress.finish();
-    if args.scene == SceneChoice::Auto && params.scene.is_some() {
-        plan.report.scene_reason = "every input is las or laz".to_owned();
+    if args.scene.scene == SceneChoice::Auto && params.scene.is_some() {
+        plan.report.scene_reason = SURVEYED.to_owned();
     }
     announce(&plan.report, args, &mut lines);
 
@@ -79,23 +73,9 @@ pub(crate) fn run(args: &ReconstructArgs) -> Result<(), CliError> {
 
 /// What was typed, as the core understands it.
 fn params(args: &ReconstructArgs, formats: &[CloudFormat]) -> ReconstructParams {
-    let surveyed = formats.iter().all(|f| matches!(f, CloudFormat::Las | CloudFormat::Laz));
     ReconstructParams {
-        scene: match args.scene {
-            SceneChoice::Auto => surveyed.then_some(Scene::Airborne),
-            SceneChoice::Object => Some(Scene::Object),
-            SceneChoice::Terrain => Some(Scene::Terrain),
-            SceneChoice::Airborne => Some(Scene::Airborne),
-            SceneChoice::Free => Some(Scene::Free),
-        },
-        up: match args.up {
-            UpChoice::X => Up::X,
-            UpChoice::Y => Up::Y,
-            UpChoice::Z => Up::Z,
-            UpChoice::MinusX => Up::MinusX,
-            UpChoice::MinusY => Up::MinusY,
-            UpChoice::MinusZ => Up::MinusZ,
-        },
+        scene: scene(&args.scene, formats),
+        up: up(&args.scene),
         resolution: match (args.resolution, args.depth) {
             (Some(length), _) => Resolution::Length(length),
             (None, Some(depth)) => Resolution::Depth(depth),
@@ -113,29 +93,42 @@ fn params(args: &ReconstructArgs, formats: &[CloudFormat]) -> ReconstructParams 
             Some(AttributesChoice::Intensity) => AttributeChoice::Intensity,
             Some(AttributesChoice::Class) => AttributeChoice::Class,
         },
-        memory: args.memory.unwrap_or_else(memory::default_limit),
+        memory: args.run.memory.unwrap_or_else(memory::default_limit),
     }
 }
 
-/// Reads all inputs and leaves out what the options leave out.
-fn read(args: &ReconstructArgs, progress: &Progress, seconds: &mut Seconds) -> Result<Input, CliError> {
-    use zeroset::monitor::Monitor;
-    let start = Instant::now();
-    progress.stage(&format!("reading {}", in_words(&args.inputs)));
-    let CloudFile { cloud, report } = read_clouds(&args.inputs)?;
-    seconds.read = start.elapsed().as_secs_f64();
+/// What can be told to be wrong before anything is read. Returns the formats of the inputs.
+fn check(args: &ReconstructArgs) -> Result<Vec<CloudFormat>, CliError> {
+    if let Some(output) = &args.output {
+        if is_stream(output) {
+            let known: Vec<&str> = MeshFormat::KNOWN.iter().map(|(suffix, _)| *suffix).collect();
+            return Err(CliError::MeshToStream { known: known.join(", ") });
+        }
+        MeshFormat::from_path(output)?;
+    }
+    let formats = check_inputs(&args.input.inputs)?;
+    let outputs = [(args.output.as_deref(), "the output"), (args.run.report.as_deref(), "the report")];
+    let outputs: Vec<_> = outputs.into_iter().filter_map(|(path, role)| Some((path?, role))).collect();
+    check_outputs(&args.input.inputs, &outputs)?;
+    Ok(formats)
+}
 
-    let start = Instant::now();
-    progress.stage("choosing points");
-    let input = select::select(cloud, report, args, progress)?;
-    seconds.select = start.elapsed().as_secs_f64();
-    Ok(input)
+/// A warning if values are asked for that the points do not have.
+fn missing_attribute(args: &ReconstructArgs, cloud: &Cloud) -> Option<String> {
+    let from = &cloud.attributes;
+    let (there, name) = match args.attributes? {
+        AttributesChoice::Off => return None,
+        AttributesChoice::Rgb => (from.colors.is_some(), "colours"),
+        AttributesChoice::Intensity => (from.intensities.is_some(), "intensities"),
+        AttributesChoice::Class => (from.classes.is_some(), "classes"),
+    };
+    (!there).then(|| format!("the points have no {name}, so the mesh will have none"))
 }
 
 /// Says what was decided for the user.
 fn announce(plan: &PlanReport, args: &ReconstructArgs, lines: &mut Lines) {
-    if args.scene == SceneChoice::Auto {
-        lines.say(text::scene(plan));
+    if args.scene.scene == SceneChoice::Auto {
+        lines.say(announced(plan.scene, &plan.scene_reason));
     }
     if let Some(wanted) = plan.wanted_resolution {
         lines.say(text::capped(plan, wanted));

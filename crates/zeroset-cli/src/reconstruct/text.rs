@@ -1,39 +1,11 @@
 //! What a reconstruction says to people.
 
-use serde::Serialize;
 use zeroset::mesh::{Mesh, topology};
 use zeroset::reconstruct::{PlanReport, ReconstructReport};
-use zeroset_io::LinearUnit;
 
-use crate::console::{Console, Lines};
-use crate::report::{ComponentsReport, Input, OutputReport, Seconds};
-use crate::table::{bytes, columns, count, decimals_for, pairs, position, significant};
-
-/// The name under which a choice is typed.
-fn name(choice: impl Serialize) -> String {
-    let typed = serde_json::to_value(choice).ok();
-    typed.as_ref().and_then(serde_json::Value::as_str).unwrap_or("?").replace("minus_", "-")
-}
-
-/// A length with its unit, where that is known.
-fn length(value: f64, unit: Option<LinearUnit>) -> String {
-    let unit = match unit {
-        Some(LinearUnit::Metre) => " m",
-        Some(LinearUnit::Foot) => " ft",
-        Some(LinearUnit::UsSurveyFoot) => " US survey ft",
-        _ => "",
-    };
-    format!("{}{unit}", significant(value, 4))
-}
-
-/// The scene that was chosen, why, and how to choose another.
-pub(super) fn scene(plan: &PlanReport) -> String {
-    format!(
-        "scene: {}, as {}; choose another with --scene object|terrain|airborne|free",
-        name(plan.scene),
-        plan.scene_reason
-    )
-}
+use crate::input::Input;
+use crate::report::{ComponentsReport, OutputReport, Seconds};
+use crate::table::{bytes, columns, count, decimals_for, length, name, pairs, position, significant};
 
 /// That memory made the result coarser than the points are.
 pub(super) fn capped(plan: &PlanReport, wanted: f64) -> String {
@@ -42,33 +14,6 @@ pub(super) fn capped(plan: &PlanReport, wanted: f64) -> String {
         significant(plan.resolution, 4),
         significant(wanted, 4)
     )
-}
-
-impl Input {
-    /// Says what was read and left out.
-    pub(super) fn describe(&self, console: Console, lines: &mut Lines) {
-        for warning in &self.warnings {
-            lines.say(format!("warning: {warning}"));
-        }
-        for note in &self.read.notes {
-            lines.say(format!("note: {note}"));
-        }
-        console.detail(&format!("points: {}", self.points_in_words()));
-    }
-
-    fn points_in_words(&self) -> String {
-        let dropped = [
-            (self.dropped.non_finite, "not finite"),
-            (self.dropped.withheld, "withheld"),
-            (self.dropped.by_class, "by class"),
-            (self.dropped.by_bounds, "by bounds"),
-            (self.dropped.isolated, "isolated"),
-        ];
-        let said: Vec<String> =
-            dropped.iter().filter(|(n, _)| *n > 0).map(|(n, why)| format!("{} {why}", count(*n))).collect();
-        let used = count(self.cloud.len());
-        if said.is_empty() { format!("{used}, all of them") } else { format!("{used}, left out {}", said.join(", ")) }
-    }
 }
 
 /// The plan, as `--dry-run` prints it.
@@ -108,11 +53,7 @@ pub(super) fn summary(done: &ReconstructReport, output: &OutputReport, seconds: 
         count(done.vertices),
         count(done.triangles),
         count(done.plan.points),
-        if input.dropped.total() > 0 {
-            format!(" of {}", count(done.plan.points as u64 + input.dropped.total()))
-        } else {
-            String::new()
-        },
+        input.of_all(done.plan.points),
         name(done.plan.scene),
         length(done.plan.resolution, input.read.unit),
         significant(seconds, 3),

@@ -56,7 +56,7 @@ pub fn write_cloud(path: &Path, cloud: &Cloud, options: &WriteOptions) -> Result
                 crs: cloud.crs.clone(),
                 ..Mesh::default()
             };
-            write(&|sink| crate::mesh::write_ply_points(sink, &mesh, options))?
+            write(&|sink| crate::mesh::write_ply_points(sink, &mesh, options, &[]))?
         }
         CloudFormat::Las | CloudFormat::Laz => {
             let file = las::encode(path, format, cloud, options)?;

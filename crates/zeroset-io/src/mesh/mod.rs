@@ -16,7 +16,7 @@ use zeroset::mesh::Mesh;
 
 pub use options::{WriteOptions, WriteReport};
 pub(crate) use options::{one_line, tolerance, world};
-pub(crate) use ply::write_points as write_ply_points;
+pub(crate) use ply::{Column, write_points as write_ply_points};
 pub(crate) use polygons::Polygons;
 
 use crate::input::read_file;

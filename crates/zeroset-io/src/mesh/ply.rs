@@ -67,11 +67,18 @@ impl ListSink for Polygons {
 /// Vertices and triangles that are gathered before they go out.
 const RUN: usize = 1 << 12;
 
+/// A value at each vertex beside those of the mesh, with its name.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Column<'a> {
+    Int(&'static str, &'a [i32]),
+    Byte(&'static str, &'a [u8]),
+}
+
 /// Writes binary little endian.
 pub(super) fn write(sink: &mut dyn Sink, mesh: &Mesh, options: &WriteOptions) -> std::io::Result<()> {
-    let single = write_vertices_header(sink, mesh, options)?;
+    let single = write_vertices_header(sink, mesh, options, &[])?;
     writeln!(sink, "element face {}\nproperty list uchar int vertex_indices\nend_header", mesh.triangles.len())?;
-    write_vertices(sink, mesh, single)?;
+    write_vertices(sink, mesh, single, &[])?;
     let mut run = Vec::with_capacity(13 * RUN);
     for triangles in mesh.triangles.chunks(RUN) {
         run.clear();
@@ -87,7 +94,12 @@ pub(super) fn write(sink: &mut dyn Sink, mesh: &Mesh, options: &WriteOptions) ->
 }
 
 /// Whether coordinates are single precision.
-fn write_vertices_header(sink: &mut dyn Sink, mesh: &Mesh, options: &WriteOptions) -> std::io::Result<bool> {
+fn write_vertices_header(
+    sink: &mut dyn Sink,
+    mesh: &Mesh,
+    options: &WriteOptions,
+    columns: &[Column<'_>],
+) -> std::io::Result<bool> {
     let single = single_holds(&mesh.vertices, mesh.world_from_local, tolerance(options, &mesh.vertices));
     let kind = if single { "float" } else { "double" };
     writeln!(sink, "ply\nformat binary_little_endian 1.0")?;
@@ -107,10 +119,16 @@ fn write_vertices_header(sink: &mut dyn Sink, mesh: &Mesh, options: &WriteOption
     if mesh.attributes.classes.is_some() {
         sink.write_all(b"property uchar classification\n")?;
     }
+    for column in columns {
+        match column {
+            Column::Int(name, _) => writeln!(sink, "property int {name}")?,
+            Column::Byte(name, _) => writeln!(sink, "property uchar {name}")?,
+        }
+    }
     Ok(single)
 }
 
-fn write_vertices(sink: &mut dyn Sink, mesh: &Mesh, single: bool) -> std::io::Result<()> {
+fn write_vertices(sink: &mut dyn Sink, mesh: &Mesh, single: bool, columns: &[Column<'_>]) -> std::io::Result<()> {
     let attributes = &mesh.attributes;
     let mut run = Vec::with_capacity(32 * RUN);
     for (start, vertices) in mesh.vertices.chunks(RUN).enumerate() {
@@ -132,15 +150,26 @@ fn write_vertices(sink: &mut dyn Sink, mesh: &Mesh, single: bool) -> std::io::Re
             if let Some(classes) = &attributes.classes {
                 run.push(classes[i]);
             }
+            for column in columns {
+                match column {
+                    Column::Int(_, values) => run.extend_from_slice(&values[i].to_le_bytes()),
+                    Column::Byte(_, values) => run.push(values[i]),
+                }
+            }
         }
         sink.write_all(&run)?;
     }
     Ok(())
 }
 
-/// Writes the vertices alone: a cloud.
-pub(crate) fn write_points(sink: &mut dyn Sink, mesh: &Mesh, options: &WriteOptions) -> std::io::Result<()> {
-    let single = write_vertices_header(sink, mesh, options)?;
+/// Writes the vertices alone, a cloud, with further columns.
+pub(crate) fn write_points(
+    sink: &mut dyn Sink,
+    mesh: &Mesh,
+    options: &WriteOptions,
+    columns: &[Column<'_>],
+) -> std::io::Result<()> {
+    let single = write_vertices_header(sink, mesh, options, columns)?;
     sink.write_all(b"end_header\n")?;
-    write_vertices(sink, mesh, single)
+    write_vertices(sink, mesh, single, columns)
 }

@@ -154,7 +154,7 @@ fn of_domain(path: &Path, domain: &Domain) -> Result<PlanarDomain, IoError> {
 }
 
 /// What is wrong, in the words of the library, which name the key, the line and the column.
-fn damaged(path: &Path, error: &serde_json::Error) -> IoError {
+pub(crate) fn damaged(path: &Path, error: &serde_json::Error) -> IoError {
     let what = error.to_string();
     match error.classify() {
         Category::Eof => IoError::malformed(path, format!("the JSON is cut short: {what}"), "copy or export it again"),

@@ -12,6 +12,7 @@ mod result;
 
 use std::path::Path;
 
+pub(crate) use json::damaged as damaged_json;
 pub use result::{MethodReport, PlanarResult, planar_json};
 
 use crate::input::read_file;

@@ -20,7 +20,7 @@ struct Side {
 /// Triangles that repeat a vertex are left out. Counting into buckets and sorting these small lists takes linear time
 /// for meshes whose vertices have few neighbours, and the order follows from the mesh alone.
 #[derive(Debug)]
-pub(super) struct Edges<'a> {
+pub(crate) struct Edges<'a> {
     mesh: &'a Mesh,
     /// Where the bucket of each vertex starts, and the total.
     starts: Vec<u32>,
@@ -29,25 +29,25 @@ pub(super) struct Edges<'a> {
 
 /// An edge with all its sides.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Edge<'a> {
-    pub(super) low: u32,
-    pub(super) high: u32,
+pub(crate) struct Edge<'a> {
+    pub(crate) low: u32,
+    pub(crate) high: u32,
     sides: &'a [Side],
 }
 
 impl Edge<'_> {
     /// Number of triangles at the edge, a triangle's repetitions counted.
-    pub(super) fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         self.sides.len()
     }
 
     /// The corners that the sides start from.
-    pub(super) fn corners(&self) -> impl Iterator<Item = u32> + '_ {
+    pub(crate) fn corners(&self) -> impl Iterator<Item = u32> + '_ {
         self.sides.iter().map(|side| side.corner)
     }
 
     /// The two corners, if the edge has exactly two sides.
-    pub(super) fn pair(&self) -> Option<[u32; 2]> {
+    pub(crate) fn pair(&self) -> Option<[u32; 2]> {
         match self.sides {
             [a, b] => Some([a.corner, b.corner]),
             _ => None,
@@ -70,7 +70,7 @@ impl<'a> Edges<'a> {
     ///
     /// # Errors
     /// What [`Mesh::check`] finds.
-    pub(super) fn new(mesh: &'a Mesh) -> Result<Self, MeshError> {
+    pub(crate) fn new(mesh: &'a Mesh) -> Result<Self, MeshError> {
         mesh.check()?;
         let proper = || mesh.triangles.iter().enumerate().filter(|(_, t)| !repeats(t));
         let mut starts = vec![0_u32; mesh.vertices.len() + 1];
@@ -97,7 +97,7 @@ impl<'a> Edges<'a> {
     }
 
     /// All edges, by their lower and then their higher vertex.
-    pub(super) fn iter(&self) -> impl Iterator<Item = Edge<'_>> {
+    pub(crate) fn iter(&self) -> impl Iterator<Item = Edge<'_>> {
         self.starts.windows(2).enumerate().flat_map(|(low, range)| {
             let bucket = &self.sides[range[0] as usize..range[1] as usize];
             bucket.chunk_by(|a, b| a.high == b.high).map(move |sides| Edge {
@@ -109,7 +109,7 @@ impl<'a> Edges<'a> {
     }
 
     /// The vertex at a corner.
-    pub(super) fn vertex(&self, corner: u32) -> u32 {
+    pub(crate) fn vertex(&self, corner: u32) -> u32 {
         self.mesh.triangles[corner as usize / 3][corner as usize % 3]
     }
 

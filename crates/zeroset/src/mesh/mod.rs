@@ -11,7 +11,9 @@ mod tests;
 
 pub use compare::{Agreement, CompareError, CompareParams, CompareReport, Distances, OneWay, Role, compare};
 pub use components::{DroppedComponents, drop_small_components};
+pub(crate) use creases::{Crease, crease_edges};
 pub use creases::{SHARP_ANGLE, creases};
+pub(crate) use edges::Edges;
 pub use topology::{Component, Topology, topology};
 
 use crate::cloud::Attributes;

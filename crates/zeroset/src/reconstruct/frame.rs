@@ -61,13 +61,13 @@ impl Up {
 /// lets F crumple, and thin walls cannot be told from solid faces. The share of samples with a second sheet near, measured:
 /// along the axes 0.24 on a solid l-block and 0.10 on a plate with walls of one cell; turned 0.02 and 0.77.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Frame(Matrix3<f64>);
+pub(crate) struct Frame(Matrix3<f64>);
 
 /// The turn of bodies: about this axis, by this angle in degrees.
 const TURN: ([f64; 3], f64) = ([1.0, 2.0, 3.0], 25.0);
 
 impl Frame {
-    pub(super) fn new(up: Up, scene: Scene) -> Self {
+    pub(crate) fn new(up: Up, scene: Scene) -> Self {
         let upright =
             Matrix3::from_columns(&[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|e| up.upright(e).into()));
         Self(match scene {
@@ -80,12 +80,12 @@ impl Frame {
     }
 
     /// A position of the file in the frame of the fit.
-    pub(super) fn enter(&self, p: [f64; 3]) -> [f64; 3] {
+    pub(crate) fn enter(&self, p: [f64; 3]) -> [f64; 3] {
         (self.0 * Vector3::from(p)).into()
     }
 
     /// A position of the frame of the fit in the file's.
-    pub(super) fn leave(&self, p: [f64; 3]) -> [f64; 3] {
+    pub(crate) fn leave(&self, p: [f64; 3]) -> [f64; 3] {
         self.0.tr_mul(&Vector3::from(p)).into()
     }
 }

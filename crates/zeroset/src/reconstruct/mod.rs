@@ -21,6 +21,7 @@ mod plan;
 mod run;
 mod scene;
 
+pub(crate) use frame::Frame;
 pub use frame::Up;
 pub use plan::{AttributeChoice, Plan, PlanReport, ReconstructParams, Resolution, Trim, plan};
 pub use run::{ReconstructReport, StageSeconds};

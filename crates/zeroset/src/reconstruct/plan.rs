@@ -17,6 +17,13 @@ pub enum Resolution {
     /// From the spacing of the points, made coarser where memory asks for it.
     #[default]
     Auto,
+    /// A multiple of the spacing of the points, made coarser where memory asks for it.
+    Spacings {
+        /// For terrain and airborne scenes.
+        terrain: f64,
+        /// For objects and free scenes.
+        body: f64,
+    },
     /// A length in the unit of the cloud.
     Length(f64),
     /// The longest side of the padded box is cut into 2^depth cells.
@@ -150,7 +157,7 @@ pub struct Plan<'a> {
     /// What it will do.
     pub report: PlanReport,
     pub(super) cloud: &'a Cloud,
-    pub(super) prepared: Prepared,
+    pub(crate) prepared: Prepared,
     /// Seconds spent on planning.
     pub(super) seconds: f64,
 }
@@ -177,7 +184,8 @@ pub fn plan<'a>(
     drop(tree);
     let (low, high) = crate::domain::bounds(cloud.points.iter().copied());
     let extent = (0..3).map(|a| high[a] - low[a]).fold(0.0, f64::max);
-    if params.resolution == Resolution::Auto && extent > ASTRAY * spacing {
+    let is_free = matches!(params.resolution, Resolution::Auto | Resolution::Spacings { .. });
+    if is_free && extent > ASTRAY * spacing {
         return Err(ReconstructError::Astray { extent, spacing });
     }
     if on_one_line(&upright) {
@@ -200,6 +208,13 @@ pub fn plan<'a>(
     let fit = |resolution| FitParams { screening: screening(resolution), ..FitParams::new(scene, resolution) };
     let wanted = match params.resolution {
         Resolution::Auto => RESOLUTION_REL * spacing,
+        Resolution::Spacings { terrain, body } => {
+            let value = if matches!(scene, Scene::Terrain | Scene::Airborne) { terrain } else { body };
+            if !(value.is_finite() && value > 0.0) {
+                return Err(ReconstructError::Length { name: "resolution in spacings", value });
+            }
+            value * spacing
+        }
         Resolution::Length(length) if length.is_finite() && length > 0.0 => length,
         Resolution::Length(value) => return Err(ReconstructError::Length { name: "resolution", value }),
         Resolution::Depth(depth) => {
@@ -230,7 +245,7 @@ pub fn plan<'a>(
             needed
         };
         let coarser = resolution * (needed / params.memory as f64).sqrt().max(1.05);
-        if params.resolution != Resolution::Auto || coarser > extent {
+        if !is_free || coarser > extent {
             return Err(over_budget(resolution, needed));
         }
         resolution = coarser;

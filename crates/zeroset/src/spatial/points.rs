@@ -142,6 +142,28 @@ impl PointTree {
         self.count(self.tree.root(), &self.tree.aabb, q, radius * radius)
     }
 
+    /// Calls `visit` with the index of every point at a distance of at most `radius`, in an order that the points
+    /// determine.
+    pub(crate) fn visit_within(&self, q: [f64; 3], radius: f64, mut visit: impl FnMut(usize)) {
+        if !(vec3::is_finite(q) && radius >= 0.0) || self.is_empty() {
+            return;
+        }
+        let mut open = vec![(self.tree.root(), self.tree.aabb)];
+        while let Some((subtree, aabb)) = open.pop() {
+            if aabb.distance_squared(q) > radius * radius {
+                continue;
+            }
+            if subtree.levels == 0 {
+                let items = self.tree.items_of(subtree).iter();
+                items.filter(|e| vec3::distance_squared(e.position, q) <= radius * radius).for_each(|e| visit(e.index));
+                continue;
+            }
+            let node = &self.tree.nodes[subtree.node];
+            let [left, right] = subtree.children();
+            open.extend([(right, node.aabb[1]), (left, node.aabb[0])]);
+        }
+    }
+
     fn count(&self, subtree: Subtree, aabb: &Aabb, q: Vec3, limit_squared: f64) -> usize {
         if aabb.distance_squared(q) > limit_squared {
             return 0;

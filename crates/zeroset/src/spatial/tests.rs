@@ -35,6 +35,12 @@ fn assert_same_as_loop(points: &[[f64; 3]], queries: &[[f64; 3]]) {
         for radius in [0.0, 0.05, 0.3, 10.0] {
             let inside = all.iter().filter(|n| n.distance_squared <= radius * radius).count();
             assert_eq!(tree.count_within(q, radius), inside);
+            let mut visited = Vec::new();
+            tree.visit_within(q, radius, |index| visited.push(index));
+            visited.sort_unstable();
+            let mut expected: Vec<_> = all[..inside].iter().map(|n| n.index).collect();
+            expected.sort_unstable();
+            assert_eq!(visited, expected);
             assert_eq!(tree.nearest_within(q, radius), all.first().copied().filter(|_| inside > 0));
         }
     }

@@ -1,5 +1,9 @@
 //! `zeroset compare`.
 
+mod features;
+
+use std::path::Path;
+
 use zeroset::mesh::{Agreement, CompareError, CompareParams, CompareReport, OneWay, Role, Topology, compare};
 use zeroset_io::read_mesh;
 
@@ -12,7 +16,11 @@ use crate::report::to_json;
 use crate::table::{columns, count, significant};
 
 pub(crate) fn run(args: &CompareArgs) -> Result<(), CliError> {
-    let (mesh, truth) = (read_mesh(&args.mesh)?, read_mesh(&args.truth)?);
+    // Without --features there is always a second file.
+    let (Some(second), None) = (&args.second, &args.features) else {
+        return features::run(args);
+    };
+    let (mesh, truth) = (read_mesh(&args.first)?, read_mesh(second)?);
     let params = CompareParams {
         samples: args.samples.get(),
         tau: args.tau,
@@ -23,15 +31,15 @@ pub(crate) fn run(args: &CompareArgs) -> Result<(), CliError> {
     let progress = Progress::new(Console::Normal);
     let report = interrupt::watched(|| compare(&mesh, &truth, &params, &progress))?;
     progress.finish();
-    let report = report.map_err(|error| named(error, args))?;
+    let report = report.map_err(|error| named(error, &args.first, second))?;
     Console::print(&if args.json { to_json(&report) } else { table(&report) })
 }
 
 /// The error with the name of the file that it is about.
-fn named(error: CompareError, args: &CompareArgs) -> CliError {
+fn named(error: CompareError, mesh: &Path, truth: &Path) -> CliError {
     let path = |role| match role {
-        Role::Mesh => args.mesh.clone(),
-        Role::Truth => args.truth.clone(),
+        Role::Mesh => mesh.to_path_buf(),
+        Role::Truth => truth.to_path_buf(),
     };
     match error {
         CompareError::NoSurface { role, faces } => CliError::NoSurface { path: path(role), faces },

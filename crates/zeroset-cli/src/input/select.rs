@@ -6,26 +6,25 @@ use zeroset::cloud::{Cloud, Filter, NOISE_CLASSES, isolated_points, retain};
 use zeroset::monitor::Monitor;
 use zeroset_io::{NO_CLASS, ReadReport, Source, shown};
 
-use crate::args::{AttributesChoice, ReconstructArgs};
+use super::{Dropped, Filters, Input};
+use crate::args::InputArgs;
 use crate::cloud_box::bounds;
 use crate::error::{CliError, in_words};
 use crate::interrupt;
-use crate::report::{Dropped, Filters, Input};
 use crate::table::{count, position};
 
 /// Leaves out what the options leave out.
 pub(super) fn select(
     mut cloud: Cloud,
     read: ReadReport,
-    args: &ReconstructArgs,
+    args: &InputArgs,
     monitor: &dyn Monitor,
 ) -> Result<Input, CliError> {
     let filters = filters(args);
     if filters.classes.is_some() && cloud.attributes.classes.is_none() {
         return Err(CliError::NoClasses { inputs: in_words(&args.inputs) });
     }
-    let mut warnings: Vec<String> = missing_attribute(args, &cloud).into_iter().collect();
-    warnings.extend(left_out_whole(&filters, &cloud, &read));
+    let warnings = left_out_whole(&filters, &cloud, &read);
     let filter = Filter {
         only_classes: filters.classes.clone(),
         exclude_classes: filters.exclude.clone(),
@@ -53,7 +52,7 @@ pub(super) fn select(
     Ok(Input { cloud, read, filters, dropped, warnings })
 }
 
-fn filters(args: &ReconstructArgs) -> Filters {
+fn filters(args: &InputArgs) -> Filters {
     let classes = args.classes.as_ref().map(|c| c.0.clone());
     let exclude = args.exclude.as_ref().map_or_else(
         || {
@@ -94,25 +93,13 @@ fn left_out_whole(filters: &Filters, cloud: &Cloud, read: &ReadReport) -> Vec<St
     bare.map(warning).collect()
 }
 
-/// A warning if values are asked for that the points do not have.
-fn missing_attribute(args: &ReconstructArgs, cloud: &Cloud) -> Option<String> {
-    let from = &cloud.attributes;
-    let (there, name) = match args.attributes? {
-        AttributesChoice::Off => return None,
-        AttributesChoice::Rgb => (from.colors.is_some(), "colours"),
-        AttributesChoice::Intensity => (from.intensities.is_some(), "intensities"),
-        AttributesChoice::Class => (from.classes.is_some(), "classes"),
-    };
-    (!there).then(|| format!("the points have no {name}, so the mesh will have none"))
-}
-
 /// The error that names what left out how many points.
 fn nothing_left(
     dropped: &Dropped,
     before: usize,
     extent: Option<[[f64; 3]; 2]>,
     filters: &Filters,
-    args: &ReconstructArgs,
+    args: &InputArgs,
 ) -> CliError {
     let by_class = match (&filters.classes, filters.exclude.is_empty()) {
         (Some(_), true) => "--classes",

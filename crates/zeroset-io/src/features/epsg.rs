@@ -1,0 +1,82 @@
+//! The EPSG code in the text of a reference system.
+
+/// The code of the horizontal system, out of `EPSG:n`, `EPSG:n+m` or WKT. `None` if the text states none.
+pub(super) fn code(crs: &str) -> Option<u32> {
+    let crs = crs.trim();
+    if let Some(codes) = crs.strip_prefix("EPSG:").or_else(|| crs.strip_prefix("epsg:")) {
+        return codes.split('+').next()?.trim().parse().ok();
+    }
+    // The outermost of these, in the order of what contains what.
+    const HORIZONTAL: [&str; 8] =
+        ["PROJCS[", "PROJCRS[", "PROJECTEDCRS[", "GEOGCS[", "GEOGCRS[", "GEOGRAPHICCRS[", "GEODCRS[", "GEODETICCRS["];
+    let (at, word) = HORIZONTAL.iter().find_map(|word| Some((crs.find(word)?, word)))?;
+    of_node(&crs[at + word.len()..])
+}
+
+/// The code that a node of WKT states for itself, given what follows its opening bracket.
+fn of_node(inside: &str) -> Option<u32> {
+    let (mut depth, mut quoted) = (0_usize, false);
+    for (at, c) in inside.char_indices() {
+        match c {
+            '"' => quoted = !quoted,
+            _ if quoted => {}
+            '[' | '(' => {
+                let name = inside[..at].rsplit(|c: char| !c.is_ascii_alphanumeric()).next().unwrap_or_default();
+                if depth == 0 && matches!(name, "AUTHORITY" | "ID") {
+                    let rest = &inside[at + 1..];
+                    return of_authority(&rest[..rest.find([']', ')'])?]);
+                }
+                depth += 1;
+            }
+            ']' | ')' => depth = depth.checked_sub(1)?,
+            _ => {}
+        }
+    }
+    None
+}
+
+/// The code in `"EPSG","28992"` or `"EPSG",28992`.
+fn of_authority(words: &str) -> Option<u32> {
+    let mut words = words.split(',').map(|word| word.trim().trim_matches('"'));
+    (words.next()? == "EPSG").then(|| words.next()?.parse().ok())?
+}
+
+#[cfg(test)]
+mod tests {
+    use super::code;
+
+    #[test]
+    fn codes_of_the_horizontal_system() {
+        let projected = r#"PROJCS["Amersfoort / RD New",GEOGCS["Amersfoort",DATUM["d",AUTHORITY["EPSG","6289"]],
+            UNIT["degree",0.0174,AUTHORITY["EPSG","9122"]],AUTHORITY["EPSG","4289"]],UNIT["metre",1,AUTHORITY["EPSG","9001"]],
+            AXIS["X",EAST],AUTHORITY["EPSG","28992"]]"#;
+        let compound = format!(
+            r#"COMPD_CS["RD + NAP",{projected},VERT_CS["NAP",AUTHORITY["EPSG","5709"]],AUTHORITY["EPSG","7415"]]"#
+        );
+        let second = r#"PROJCRS["a, [b",BASEGEOGCRS["c",ID["EPSG",4289]],CS[Cartesian,2],ID["EPSG",28992]]"#;
+        for text in ["EPSG:28992", "EPSG:28992+5709", projected, &compound, second] {
+            assert_eq!(code(text), Some(28992), "{text}");
+        }
+        assert_eq!(
+            code(r#"GEOGCS["WGS 84",UNIT["degree",1,AUTHORITY["EPSG","9122"]],AUTHORITY["EPSG","4326"]]"#),
+            Some(4326)
+        );
+    }
+
+    #[test]
+    fn no_code_is_made_up() {
+        for text in [
+            "",
+            "EPSG:",
+            "EPSG:x",
+            "a local grid",
+            r#"PROJCS["a",GEOGCS["b",AUTHORITY["EPSG","4289"]],UNIT["metre",1,AUTHORITY["EPSG","9001"]]]"#,
+            r#"PROJCS["a",AUTHORITY["ESRI","28992"]]"#,
+            r#"PROJCS["a",AUTHORITY["EPSG"#,
+            "PROJCS[]]]",
+            "PROJCS[é[",
+        ] {
+            assert_eq!(code(text), None, "{text}");
+        }
+    }
+}

@@ -1,0 +1,206 @@
+//! Which regions are flat, and not parts of something curved or of clutter.
+
+use nalgebra::{Matrix6, Vector6};
+use rayon::prelude::*;
+use rustc_hash::FxHashSet;
+
+use super::regions::{NONE, Partition};
+use crate::feature::moments::{Fit, Moments};
+use crate::feature::surroundings::NEIGHBOURS;
+use crate::vec3::{self, Vec3};
+
+/// When a surface counts as bent.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::feature) struct Bend {
+    /// A quadric that leaves so many times smaller residuals than the plane, around a region, explains the surface there better.
+    ratio: f64,
+    /// The residuals that it leaves, over those of the region's own points from their plane, at most: else it explains nothing.
+    fits: f64,
+}
+
+impl Bend {
+    /// For bodies, which are round as often as flat.
+    pub(in crate::feature) const OF_BODIES: Self = Self { ratio: 1.2, fits: 1.8 };
+    /// For terrain, where roofs are flat and what stands on them spoils the fit of any quadric. With the values for bodies a tenth of
+    /// the roofs of a real town are lost.
+    pub(in crate::feature) const OF_TERRAIN: Self = Self { ratio: 1.5, fits: 1.2 };
+}
+
+/// That much of the sum of squares must be won, in variances of the noise, for the quadric not to win by chance: with three more
+/// parameters, 25 is won once in 10^5 times.
+const BY_CHANCE: f64 = 25.0;
+/// On the region's own points the quadric of the wider surroundings may leave so many times the residuals of the plane. A flat face
+/// that runs into a round one is not explained by the quadric of both.
+const AS_GOOD: f64 = 1.08;
+/// So many variances of the points from the plane are allowed besides: the plane was chosen to suit these points.
+const SELECTED: f64 = 40.0;
+/// The surroundings that are looked at hold so many times the points of the region: narrow ones, as no quadric suits a wide part of an
+/// organic shape, and wide ones, as a patch of a sphere is told from flat only when its height is some deviations of the noise.
+const WIDER: [f64; 3] = [1.5, 2.5, 4.0];
+/// Points of the windows on a region.
+const WINDOWS: [usize; 3] = [100, 200, 400];
+/// Regions of more points are wide by themselves.
+const WIDE_ENOUGH: usize = 20_000;
+/// A larger region is looked at in one window for so many of its points, up to a number of windows.
+const WINDOW_SHARE: usize = 150;
+const MOST_WINDOWS: usize = 12;
+/// Cosine of the angle from the region's normal up to which the surface goes on smoothly.
+const SMOOTH: f64 = 0.87;
+/// The largest share of the neighbours of a region that belong to none.
+const CLUTTER: f64 = 0.35;
+/// The least mean cosine between the normals around the points and that of the plane.
+const ALIGNED: f64 = 0.8;
+/// The deviation along the shorter axis of a region over that across it. A strip that is one noise wide has no direction.
+const LEAST_WIDTH: f64 = 3.0;
+
+/// For each region whether it is flat.
+pub(in crate::feature) fn flat_regions(partition: &Partition<'_>) -> Vec<bool> {
+    members(partition).into_par_iter().enumerate().map(|(region, points)| is_flat(partition, region, &points)).collect()
+}
+
+/// The points of each region, ascending.
+pub(in crate::feature) fn members(partition: &Partition<'_>) -> Vec<Vec<u32>> {
+    let mut members: Vec<Vec<u32>> = partition.regions.iter().map(|r| Vec::with_capacity(r.count)).collect();
+    for (i, &label) in partition.labels.iter().enumerate() {
+        if label != NONE {
+            members[label as usize].push(i as u32);
+        }
+    }
+    members
+}
+
+fn is_flat(partition: &Partition<'_>, region: usize, members: &[u32]) -> bool {
+    let normal = partition.regions[region].normal;
+    let mut moments = Moments::default();
+    let mut aligned = 0.0;
+    for &i in members {
+        moments.add(partition.points[i as usize]);
+        aligned += vec3::dot(partition.around.normals[i as usize], normal).abs();
+    }
+    let Some(fit) = moments.fit() else { return false };
+    fit.deviations[1] > LEAST_WIDTH * fit.deviations[0]
+        && aligned > ALIGNED * members.len() as f64
+        && !is_curved(partition, region, &fit, members)
+}
+
+/// For each region whether its points are neighbours of one another, and not scattered among points of no region.
+pub(in crate::feature) fn dense_regions(partition: &Partition<'_>) -> Vec<bool> {
+    let is_dense = |members: Vec<u32>| {
+        let mut strangers = 0;
+        for &i in &members {
+            let around = partition.around.of(i as usize);
+            strangers += around.iter().filter(|&&j| partition.labels[j as usize] == NONE).count();
+        }
+        (strangers as f64) < CLUTTER * (members.len() * NEIGHBOURS) as f64
+    };
+    members(partition).into_par_iter().map(is_dense).collect()
+}
+
+/// Whether a quadric explains the region, and the surface that goes on around it, better than the plane: as a whole, or in most of
+/// the windows on a larger one. A ring around the top of a torus is no quadric, but its pieces are.
+fn is_curved(partition: &Partition<'_>, region: usize, fit: &Fit, members: &[u32]) -> bool {
+    let n = members.len();
+    let whole = |wanted: usize| {
+        curves(partition, region, fit, &surroundings(partition, fit.normal, members.to_vec(), wanted.max(n)))
+    };
+    if n <= WIDE_ENOUGH && WIDER.iter().any(|times| whole((times * n as f64) as usize)) {
+        return true;
+    }
+    let count = (n / WINDOW_SHARE).clamp(1, MOST_WINDOWS);
+    WINDOWS.iter().any(|&points| {
+        let seeds = (0..count).map(|w| members[(2 * w + 1) * n / (2 * count)]);
+        let curved = seeds
+            .filter(|&seed| curves(partition, region, fit, &surroundings(partition, fit.normal, vec![seed], points)))
+            .count();
+        2 * curved > count
+    })
+}
+
+/// Whether a quadric explains the surface in a window better than a plane does, and the region's points there about as well.
+fn curves(partition: &Partition<'_>, region: usize, fit: &Fit, window: &[u32]) -> bool {
+    let height = Heights::new(fit, partition);
+    let all = height.sums(window.iter().copied());
+    let Some(quadric) = all.quadric() else { return false };
+    let (flat, curved) = (all.flat_squares(), all.squares(&quadric));
+    let noise = partition.limits.noise;
+    let Bend { ratio, fits } = partition.limits.bend;
+    if flat < ratio * ratio * curved || flat - curved < BY_CHANCE * noise * noise {
+        return false;
+    }
+    let own = height.sums(window.iter().copied().filter(|&i| partition.labels[i as usize] == region as u32));
+    let (flat, count) = (own.flat_squares(), own.gram[(0, 0)]);
+    if curved * count > fits * fits * flat * all.gram[(0, 0)] {
+        return false;
+    }
+    own.squares(&quadric) < (AS_GOOD * AS_GOOD + SELECTED / count) * flat
+}
+
+/// The points and those around them that the surface reaches without a sharp turn, up to a number.
+fn surroundings(partition: &Partition<'_>, normal: Vec3, mut window: Vec<u32>, wanted: usize) -> Vec<u32> {
+    let mut known: FxHashSet<u32> = window.iter().copied().collect();
+    let mut head = 0;
+    while head < window.len() && window.len() < wanted {
+        for &j in partition.around.of(window[head] as usize) {
+            if vec3::dot(partition.around.normals[j as usize], normal).abs() > SMOOTH && known.insert(j) {
+                window.push(j);
+            }
+        }
+        head += 1;
+    }
+    window
+}
+
+/// Sums over points from which the quadric of least squares follows: the height over a plane as a polynomial of degree 2.
+struct HeightSums {
+    gram: Matrix6<f64>,
+    right: Vector6<f64>,
+    total: f64,
+}
+
+/// Measures heights over the plane of a region.
+struct Heights<'a> {
+    points: &'a [Vec3],
+    frame: [Vec3; 3],
+    centre: Vec3,
+    scale: f64,
+}
+
+impl<'a> Heights<'a> {
+    fn new(fit: &Fit, partition: &Partition<'a>) -> Self {
+        let [u, v] = vec3::axes_across(fit.normal);
+        let scale = fit.deviations[2].max(f64::MIN_POSITIVE);
+        Self { points: partition.points, frame: [u, v, fit.normal], centre: fit.centre, scale }
+    }
+
+    fn sums(&self, members: impl Iterator<Item = u32>) -> HeightSums {
+        let mut sums = HeightSums { gram: Matrix6::zeros(), right: Vector6::zeros(), total: 0.0 };
+        let [u, v, normal] = self.frame;
+        for i in members {
+            let d = vec3::sub(self.points[i as usize], self.centre);
+            let (x, y, z) = (vec3::dot(d, u) / self.scale, vec3::dot(d, v) / self.scale, vec3::dot(d, normal));
+            let row = Vector6::new(1.0, x, y, x * x, x * y, y * y);
+            sums.gram += row * row.transpose();
+            sums.right += row * z;
+            sums.total += z * z;
+        }
+        sums
+    }
+}
+
+impl HeightSums {
+    fn quadric(&self) -> Option<Vector6<f64>> {
+        Some(self.gram.cholesky()?.solve(&self.right))
+    }
+
+    /// Sum of the squared residuals of a quadric.
+    fn squares(&self, quadric: &Vector6<f64>) -> f64 {
+        (self.total - 2.0 * self.right.dot(quadric) + quadric.dot(&(self.gram * quadric))).max(0.0)
+    }
+
+    /// Sum of the squared residuals of the plane of least squares.
+    fn flat_squares(&self) -> f64 {
+        let gram = self.gram.fixed_view::<3, 3>(0, 0).into_owned();
+        let right = self.right.fixed_rows::<3>(0).into_owned();
+        gram.cholesky().map_or(self.total, |c| (self.total - right.dot(&c.solve(&right))).max(0.0))
+    }
+}

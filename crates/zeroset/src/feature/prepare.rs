@@ -1,0 +1,150 @@
+//! The points made ready: in an order of their own, with F fitted to them, and every default resolved.
+
+use std::cmp::Ordering;
+
+use rayon::prelude::*;
+
+use super::params::{FeatureError, FeatureParams, Posture};
+use super::planes::flatness::Bend;
+use super::planes::regions::{LEAST_POINTS, Limits};
+use super::surroundings::Surroundings;
+use crate::cloud::Cloud;
+use crate::domain::{block_key, bounds};
+use crate::field::LatticeField;
+use crate::fit::cascade::Scene;
+use crate::monitor::Monitor;
+use crate::reconstruct::{
+    AttributeChoice, Frame, Plan, PlanReport, ReconstructError, ReconstructParams, Resolution, Trim, plan,
+};
+use crate::vec3::{self, Vec3};
+
+/// The points in an order that does not depend on the order of the cloud, each position once, near the origin.
+pub(super) struct Sorted {
+    pub(super) centre: Vec3,
+    pub(super) points: Vec<Vec3>,
+    /// For each point of the cloud its place, unless it is not finite.
+    pub(super) place: Vec<Option<u32>>,
+}
+
+impl Sorted {
+    pub(super) fn new(cloud: &Cloud) -> Self {
+        let finite = |p: &&Vec3| vec3::is_finite(**p);
+        let (low, high) = bounds(cloud.points.iter().filter(finite).copied());
+        let centre = vec3::scale(vec3::add(low, high), 0.5);
+        let side = (0..3).map(|a| high[a] - low[a]).fold(0.0, f64::max);
+        let scale = if side > 0.0 { f64::from((1_u32 << 20) - 1) / side } else { 0.0 };
+        let mut order: Vec<(u64, u32)> = cloud
+            .points
+            .par_iter()
+            .enumerate()
+            .filter(|(_, p)| vec3::is_finite(**p))
+            .map(|(i, p)| (block_key(std::array::from_fn(|a| ((p[a] - low[a]) * scale) as u32)), i as u32))
+            .collect();
+        let total = |a: Vec3, b: Vec3| (0..3).fold(Ordering::Equal, |o, c| o.then(a[c].total_cmp(&b[c])));
+        order.par_sort_unstable_by(|a, b| {
+            let by_position = || total(cloud.points[a.1 as usize], cloud.points[b.1 as usize]);
+            a.0.cmp(&b.0).then_with(by_position).then(a.1.cmp(&b.1))
+        });
+        let mut points: Vec<Vec3> = Vec::with_capacity(order.len());
+        let mut place = vec![None; cloud.len()];
+        let mut last = None;
+        for (_, i) in order {
+            let p = cloud.points[i as usize];
+            if last != Some(p) {
+                points.push(vec3::sub(p, centre));
+                last = Some(p);
+            }
+            place[i as usize] = Some(points.len() as u32 - 1);
+        }
+        Self { centre, points, place }
+    }
+}
+
+/// F on a lattice, and what was measured for it.
+pub(super) struct Fitted {
+    pub(super) plan: PlanReport,
+    field: LatticeField,
+    frame: Frame,
+}
+
+impl Fitted {
+    pub(super) fn new(sorted: &Sorted, params: &FeatureParams, monitor: &dyn Monitor) -> Result<Self, FeatureError> {
+        let cloud = Cloud { points: sorted.points.clone(), ..Cloud::default() };
+        let wanted = ReconstructParams {
+            scene: params.scene,
+            up: params.up,
+            resolution: Resolution::Spacings { terrain: RESOLUTION_OF_TERRAIN_REL, body: RESOLUTION_REL },
+            trim: Trim::Off,
+            attributes: AttributeChoice::Off,
+            memory: params.memory,
+            ..ReconstructParams::default()
+        };
+        let Plan { report, prepared, .. } = plan(&cloud, &wanted, monitor)?;
+        let (field, _) = prepared.fit(monitor).map_err(ReconstructError::from)?;
+        let frame = Frame::new(report.up, report.scene);
+        Ok(Self { plan: report, field, frame })
+    }
+
+    /// The direction out of the body at a position, not of unit length.
+    pub(super) fn outward(&self, p: Vec3) -> Option<Vec3> {
+        Some(self.frame.leave(self.field.gradient(self.frame.enter(p))?))
+    }
+}
+
+/// Cells of the fit over the spacing. F tells the sides of planes only, so terrain takes coarse cells. For a body the finest level would then
+/// be dense, which is slower than the fine ones.
+const RESOLUTION_REL: f64 = 1.5;
+const RESOLUTION_OF_TERRAIN_REL: f64 = 2.0;
+
+/// Every default resolved.
+pub(super) struct Resolved {
+    pub(super) spacing: f64,
+    pub(super) noise: f64,
+    pub(super) min_area: f64,
+    pub(super) max_distance: f64,
+    pub(super) max_angle: f64,
+    pub(super) sharp_angle: f64,
+}
+
+/// The smallest plane, in squares of the spacing and of the noise.
+const LEAST_SPACINGS: f64 = 16.0;
+const LEAST_NOISES: f64 = 50.0;
+/// The farthest that a point lies from its plane, in deviations of the noise.
+const FARTHEST: f64 = 3.0;
+/// The noise is at most so many times that of the flattest tenth of the points. Vegetation, where it is half of the points, more than
+/// doubles the median over all points.
+const MOST_NOISE: f64 = 3.2;
+/// Noise under this share of the spacing is not believed: the surface itself is not flat to more.
+const LEAST_NOISE: f64 = 0.02;
+/// The largest angle between a plane and the surface around its points. Near an edge of 90 degrees the normals turn by half of it.
+const MAX_ANGLE_DEG: f64 = 40.0;
+
+impl Resolved {
+    pub(super) fn new(params: &FeatureParams, fitted: &Fitted, around: &Surroundings) -> Self {
+        let spacing = fitted.plan.spacing;
+        let flattest = around.flattest().map_or(f64::INFINITY, |noise| MOST_NOISE * noise);
+        let noise = fitted.plan.noise.min(flattest).max(LEAST_NOISE * spacing);
+        let least = (LEAST_SPACINGS * spacing * spacing).max(LEAST_NOISES * noise * noise);
+        Self {
+            spacing,
+            noise: params.max_distance.map_or(noise, |distance| distance / FARTHEST),
+            min_area: params.min_area.unwrap_or(least),
+            max_distance: params.max_distance.unwrap_or(FARTHEST * noise),
+            max_angle: params.max_angle.unwrap_or(MAX_ANGLE_DEG.to_radians()),
+            sharp_angle: params.sharp_angle,
+        }
+    }
+
+    pub(super) fn limits(&self, fitted: &Fitted, posture: Posture) -> Limits {
+        let is_terrain = matches!(fitted.plan.scene, Scene::Terrain | Scene::Airborne);
+        let stands = posture == Posture::Upright && is_terrain;
+        Limits {
+            noise: self.noise,
+            distance: self.max_distance,
+            cosine: self.max_angle.cos(),
+            least: LEAST_POINTS,
+            bend: if is_terrain { Bend::OF_TERRAIN } else { Bend::OF_BODIES },
+            up: stands.then(|| fitted.plan.up.restore([0.0, 0.0, 1.0])),
+        }
+    }
+}
