@@ -7,6 +7,8 @@ import sys
 import time
 from pathlib import Path
 
+import numpy as np
+
 ROOT = Path(__file__).resolve().parent.parent
 
 
@@ -49,6 +51,21 @@ def measured(command):
 def output_json(command):
     """Runs a command and reads what it prints as JSON."""
     return json.loads(subprocess.run([str(c) for c in command], check=True, stdout=subprocess.PIPE).stdout)
+
+
+def read_points(path):
+    """The vertices of a binary PLY file of zeroset as a record array."""
+    types = {"double": "<f8", "float": "<f4", "int": "<i4", "uint": "<u4", "ushort": "<u2", "uchar": "u1"}
+    with open(path, "rb") as file:
+        count, fields, element = 0, [], None
+        while (line := file.readline().decode()) != "end_header\n":
+            words = line.split()
+            if words[0] == "element":
+                element = words[1]
+                count = int(words[2]) if element == "vertex" else count
+            elif words[0] == "property" and element == "vertex":
+                fields.append((words[2], types[words[1]]))
+        return np.fromfile(file, fields, count)
 
 
 def table(rows):
