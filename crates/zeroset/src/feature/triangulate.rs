@@ -3,6 +3,7 @@
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 
 use super::Plane;
+use super::planes::outline::crossed_by_ray;
 use crate::vec3;
 
 /// Cuts the polygon of a plane, holes and all, into triangles.
@@ -70,11 +71,7 @@ pub fn triangulate(plane: &Plane) -> Vec<[usize; 3]> {
         }
         start += ring.len();
     }
-    let inside = |[x, y]: [f64; 2]| {
-        let crossed =
-            |[a, b]: &&[[f64; 2]; 2]| (a[1] > y) != (b[1] > y) && a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]) > x;
-        sides.iter().filter(crossed).count() % 2 == 1
-    };
+    let inside = |p: [f64; 2]| sides.iter().filter(|side| crossed_by_ray(p, **side)).count() % 2 == 1;
     let faces = mesh.inner_faces().map(|face| face.vertices().map(|v| index_of[v.fix().index()]));
     faces.filter(|t| inside(std::array::from_fn(|a| (flat[t[0]][a] + flat[t[1]][a] + flat[t[2]][a]) / 3.0))).collect()
 }

@@ -2,7 +2,7 @@
 
 pub(in crate::feature) mod flatness;
 mod leftovers;
-mod outline;
+pub(in crate::feature) mod outline;
 pub(in crate::feature) mod polygons;
 pub(in crate::feature) mod regions;
 mod settle;
@@ -119,27 +119,21 @@ fn find_regions(
             break;
         }
     }
-    let spacings = |partition: &Partition<'_>| -> Vec<f64> {
-        members(partition).par_iter().map(|members| spacing_of(partition, members)).collect()
-    };
-    let keep: Vec<bool> = spacings(partition)
-        .iter()
-        .zip(&partition.regions)
-        .map(|(spacing, region)| region.count as f64 * spacing * spacing >= resolved.min_area)
-        .collect();
-    partition.retain(&keep);
-    // What has no outline is no face.
-    let keep: Vec<bool> = members(partition)
+    let members = members(partition);
+    let spacings: Vec<f64> = members.par_iter().map(|members| spacing_of(partition, members)).collect();
+    let keep: Vec<bool> = members
         .par_iter()
         .zip(&partition.regions)
-        .zip(spacings(partition))
-        .map(|((members, region), spacing)| {
-            let points: Vec<Vec3> = members.iter().map(|&i| partition.points[i as usize]).collect();
-            members.len() >= LEAST_POINTS && has_outline(&region.flat(), &points, spacing)
+        .zip(&spacings)
+        .map(|((members, region), &spacing)| {
+            let is_large = region.count as f64 * spacing * spacing >= resolved.min_area;
+            let points = || -> Vec<Vec3> { members.iter().map(|&i| partition.points[i as usize]).collect() };
+            // What has no outline is no face.
+            is_large && members.len() >= LEAST_POINTS && has_outline(&region.flat(), &points(), spacing)
         })
         .collect();
     partition.retain(&keep);
-    Ok(spacings(partition))
+    Ok(spacings.into_iter().zip(keep).filter(|(_, keep)| *keep).map(|(spacing, _)| spacing).collect())
 }
 
 /// The side of the square that one point has to itself: the median over the points.

@@ -7,32 +7,19 @@
 //! # Source
 //! Edelsbrunner, Kirkpatrick and Seidel, "On the shape of a set of points in the plane", 1983, with the longest side for the radius.
 
-use rustc_hash::FxHashMap;
 use spade::handles::FixedFaceHandle;
-use spade::{DelaunayTriangulation, HasPosition, Point2, Triangulation};
+use spade::{DelaunayTriangulation, Point2, Triangulation};
 
 /// A closed ring of positions in the plane; the first is not repeated.
 pub(in crate::feature) type Ring = Vec<[f64; 2]>;
-
-/// A site with its number among the points.
-struct Site {
-    position: Point2<f64>,
-}
-
-impl HasPosition for Site {
-    type Scalar = f64;
-    fn position(&self) -> Point2<f64> {
-        self.position
-    }
-}
 
 /// The rings around the pieces of the alpha shape whose area is at least `least`: counter-clockwise outside, clockwise around holes of
 /// at least that area. The ring with the largest area comes first.
 ///
 /// Points must be finite. Cost: O(n log n).
 pub(in crate::feature) fn outline(points: &[[f64; 2]], reach: f64, least: f64) -> Vec<Ring> {
-    let sites: Vec<Site> = points.iter().map(|&[x, y]| Site { position: Point2::new(x, y) }).collect();
-    let Ok(plane) = DelaunayTriangulation::<Site>::bulk_load(sites) else { return Vec::new() };
+    let sites: Vec<Point2<f64>> = points.iter().map(|&[x, y]| Point2::new(x, y)).collect();
+    let Ok(plane) = DelaunayTriangulation::<Point2<f64>>::bulk_load(sites) else { return Vec::new() };
     let limit = reach * reach;
     let mut kept = vec![false; plane.num_all_faces()];
     for face in plane.inner_faces() {
@@ -41,16 +28,16 @@ pub(in crate::feature) fn outline(points: &[[f64; 2]], reach: f64, least: f64) -
         kept[face.fix().index()] = longest <= limit;
     }
     let is_kept = |face: FixedFaceHandle<spade::handles::PossiblyOuterTag>| kept[face.index()];
-    let mut visited: FxHashMap<usize, ()> = FxHashMap::default();
+    let mut visited = vec![false; plane.num_directed_edges()];
     let mut rings: Vec<(f64, Ring)> = Vec::new();
     for start in plane.directed_edges() {
         let is_border = is_kept(start.face().fix()) && !is_kept(start.rev().face().fix());
-        if !is_border || visited.contains_key(&start.fix().index()) {
+        if !is_border || visited[start.fix().index()] {
             continue;
         }
         let (mut ring, mut edge) = (Vec::new(), start);
         loop {
-            visited.insert(edge.fix().index(), ());
+            visited[edge.fix().index()] = true;
             let from = edge.from().position();
             ring.push([from.x, from.y]);
             // The next border edge around the end of this one, over the kept triangles between.
@@ -72,7 +59,7 @@ pub(in crate::feature) fn outline(points: &[[f64; 2]], reach: f64, least: f64) -
     rings.into_iter().map(|(_, ring)| ring).collect()
 }
 
-/// Twice the sum of the triangles to the origin, halved: positive for counter-clockwise rings.
+/// The area that a ring encloses: positive for counter-clockwise rings, negative for clockwise ones.
 pub(in crate::feature) fn signed_area(ring: &[[f64; 2]]) -> f64 {
     let Some(&origin) = ring.first() else { return 0.0 };
     let from = |p: [f64; 2]| [p[0] - origin[0], p[1] - origin[1]];
@@ -121,6 +108,11 @@ fn split(line: &[[f64; 2]], first: usize, last: usize, tolerance: f64, keep: &mu
             parts.extend([(first, i), (i, last)]);
         }
     }
+}
+
+/// Whether a ray to the right of a position crosses a side. It crosses a ring around the position an odd number of times.
+pub(in crate::feature) fn crossed_by_ray([x, y]: [f64; 2], [a, b]: [[f64; 2]; 2]) -> bool {
+    (a[1] > y) != (b[1] > y) && a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]) > x
 }
 
 /// Distance from a segment.

@@ -24,7 +24,7 @@ use trace::{
     Piece, Planar, STRAIGHT, TRUST, Trace, along, dot, drop_doubles, meet, merged, minus, profile, rim, square,
 };
 
-use super::outline::{Ring, outline, signed_area, simplified};
+use super::outline::{Ring, crossed_by_ray, outline, signed_area, simplified};
 use super::polygons::PlaneFrame;
 use super::regions::{NONE, Partition};
 use crate::feature::sharp::support::Flat;
@@ -67,16 +67,10 @@ impl Wall {
     }
 }
 
-/// Whether a ring winds around a position: a ray to the right crosses it an odd number of times.
+/// Whether a position lies inside a ring.
 fn is_inside(ring: &[Planar], p: Planar) -> bool {
-    let mut inside = false;
-    for (i, a) in ring.iter().enumerate() {
-        let b = ring[(i + 1) % ring.len()];
-        if (a[1] > p[1]) != (b[1] > p[1]) && p[0] < a[0] + (p[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0]) {
-            inside = !inside;
-        }
-    }
-    inside
+    let sides = ring.iter().zip(ring.iter().cycle().skip(1));
+    sides.filter(|(a, b)| crossed_by_ray(p, [**a, **b])).count() % 2 == 1
 }
 
 /// What walls are inferred from.
@@ -111,6 +105,7 @@ const DROPPING: f64 = 0.6;
 const SEEN: f64 = 0.3;
 /// How many of these distances are looked at beyond a side of a single roof. The farther ones tell the outline of a building only.
 const NEXT: usize = 2;
+
 /// The walls under the rims of all roofs, by falling length.
 pub(in crate::feature) fn walls(roofs: &Roofs<'_>) -> Vec<Wall> {
     let upright: Vec<Vec3> = roofs.partition.points.par_iter().map(|&p| roofs.up.upright(p)).collect();
