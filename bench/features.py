@@ -11,6 +11,8 @@ airborne: `zeroset sample airborne-city`, over all of the truth, seen by the clo
 creases: bodies scaled to a diagonal of 1, with 60,000 points spread evenly by area and noise of 0.001. Recall and
     precision of crease length within 0.01, over the whole truth. A true crease is straight where both its sides are
     flat, of 0.002 or more in area each; else it is curved.
+noise: the same bodies with noise of 0.002, about half the spacing, several seeds: their flat faces (faces.py), and edges
+    within 2 and corners within 3 times the noise.
 smooth: planes on bodies that have none, or hardly any.
 delft: cost; the share of roof points (class 6 and |n_z| > 0.3 over their 16 nearest of class 6) on a plane and within
     0.1 m of it; the share of the points of class 1 off roofs (no point of class 6 within 2 m in plan, or more than
@@ -33,13 +35,15 @@ from scipy.spatial import cKDTree
 import plane_peers
 import polygons
 from common import ROOT, add_common, binary, measured, output_json, read_points, table
-from objects import read, sampled, scaled, write_off
+from faces import Faces
+from objects import read, sampled_with_triangles, scaled, write_off
 
-PARTS = ("city", "airborne", "creases", "smooth", "delft", "polygons")
+PARTS = ("city", "airborne", "creases", "noise", "smooth", "delft", "polygons")
 NOISE = 0.001
 BODIES = ("fandisk.obj", "anchor.off", "block.obj", "featuretype.stl")
 BODY_POINTS = 60_000
 BODY_TOLERANCE = 0.01
+STRONG_NOISE = 0.002
 FLAT_SIDE = 0.002  # least area of a flat side of a straight crease
 SAME_FACE = np.radians(0.5)
 SHARP = np.radians(30.0)
@@ -205,7 +209,7 @@ def bodies(bench):
             continue
         vertices, triangles = welded(*read(path))
         vertices = scaled(vertices)
-        cloud, truth = body(bench, path.stem, vertices, triangles)
+        cloud, truth, _ = body(bench, path.stem, vertices, triangles)
         found, _, cost = bench.features(cloud, path.stem)
         edges = bench.compare(found, truth, "--edge-tolerance", BODY_TOLERANCE)["edges"]
         lines = [np.array(edge["polyline"]) for edge in json.loads(found.read_text())["edges"]]
@@ -229,12 +233,48 @@ def bodies(bench):
         print(f"\n{name} is skipped: no such file in the data folder")
 
 
-def body(bench, stem, vertices, triangles):
-    rng = np.random.default_rng(0)
+def body(bench, stem, vertices, triangles, noise=NOISE, seed=0):
+    """The files of a cloud and its truth, and the triangle of each point."""
     cloud, truth = (bench.work / f"{stem}{end}" for end in (".xyz", "-truth.off"))
-    np.savetxt(cloud, sampled(vertices, triangles, BODY_POINTS, NOISE, rng), fmt="%.9g")
+    rng = np.random.default_rng(seed)
+    points, chosen = sampled_with_triangles(vertices, triangles, BODY_POINTS, noise, rng)
+    np.savetxt(cloud, points, fmt="%.9g")
     write_off(truth, vertices, triangles)
-    return cloud, truth
+    return cloud, truth, chosen
+
+
+def strong_noise(bench):
+    rows, skipped = [], []
+    for name in BODIES:
+        path = Path(bench.args.data) / name
+        if not path.exists():
+            skipped.append(name)
+            continue
+        vertices, triangles = welded(*read(path))
+        vertices = scaled(vertices)
+        faces = Faces(vertices, triangles)
+        for seed in bench.args.seeds:
+            cloud, truth, chosen = body(bench, path.stem, vertices, triangles, STRONG_NOISE, seed)
+            found, points, cost = bench.features(cloud, path.stem)
+            tolerances = ["--edge-tolerance", 2 * STRONG_NOISE, "--corner-tolerance", 3 * STRONG_NOISE]
+            agreement = bench.compare(found, truth, *tolerances)
+            edges, corners = agreement["edges"], agreement["corners"]
+            labelled = read_points(points)
+            positions = np.stack([labelled[a] for a in "xyz"], axis=1)
+            planes = json.loads(found.read_text())["planes"]
+            normals = np.array([p["normal"] for p in planes]).reshape(-1, 3)
+            offsets = np.array([p["offset"] for p in planes])
+            judged = faces.judged(positions, chosen, labelled["plane"], normals, offsets)
+            rows.append([f"{path.stem}, seed {seed}", (judged["faces"], "{}"), (judged["recall"], "{:.3f}"),
+                         (judged["precision"], "{:.3f}"), (judged["angle"], "{:.2f}"), (judged["least_angle"], "{:.2f}"),
+                         (judged["shift"], "{:.5f}"), (edges["recall"], "{:.3f}"), (edges["precision"], "{:.3f}"),
+                         (corners["recall"], "{:.3f}"), (corners["precision"], "{:.3f}"), (cost["cpu"], "{:.2f}")])
+    head = ["body", "faces", "face recall", "precision", "angle, deg", "least squares", "offset", "edge recall",
+            "edge precision", "corner recall", "corner precision", "CPU s"]
+    print(f"\n## Bodies with noise of {STRONG_NOISE}, {BODY_POINTS} points\n")
+    print(table([head] + [[row[0], *[shown(*cell) for cell in row[1:]]] for row in rows]), flush=True)
+    for name in skipped:
+        print(f"\n{name} is skipped: no such file in the data folder")
 
 
 def smooth(bench):
@@ -321,7 +361,7 @@ def main():
     parser.add_argument("--seeds", type=int, nargs="+", default=[0, 1, 2, 3, 4])
     parser.add_argument("--only", nargs="+", choices=PARTS, default=PARTS)
     args = parser.parse_args()
-    parts = dict(zip(PARTS, (city, airborne, bodies, smooth, delft, outlines)))
+    parts = dict(zip(PARTS, (city, airborne, bodies, strong_noise, smooth, delft, outlines)))
     with tempfile.TemporaryDirectory() as temporary:
         work = Path(args.work or temporary)
         work.mkdir(parents=True, exist_ok=True)

@@ -94,12 +94,17 @@ def scaled(vertices):
 
 def sampled(vertices, triangles, count, noise, rng):
     """Points spread evenly by area over triangles, with Gaussian noise on every coordinate."""
+    return sampled_with_triangles(vertices, triangles, count, noise, rng)[0]
+
+
+def sampled_with_triangles(vertices, triangles, count, noise, rng):
+    """The same, with the triangle of each point."""
     a, b, c = (vertices[triangles[:, k]] for k in range(3))
     area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
     chosen = rng.choice(len(triangles), size=count, p=area / area.sum())
     root, v = np.sqrt(rng.random((count, 1))), rng.random((count, 1))
     points = (1 - root) * a[chosen] + root * (1 - v) * b[chosen] + root * v * c[chosen]
-    return points + rng.normal(scale=noise, size=points.shape)
+    return points + rng.normal(scale=noise, size=points.shape), chosen
 
 
 def inside(mesh, points):

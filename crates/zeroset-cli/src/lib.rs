@@ -28,6 +28,7 @@ mod progress;
 mod reconstruct;
 mod report;
 mod sample;
+mod simplify;
 mod table;
 mod threads;
 
@@ -83,6 +84,7 @@ fn run(command: Command) -> Result<(), CliError> {
         Command::Features(args) => features::run(&args),
         Command::Fit2d(args) => fit2d::run(&args),
         Command::Sample(args) => sample::run(&args),
+        Command::Simplify(args) => simplify::run(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Info(args) => info::run(&args),
         Command::Completions(args) => completions::run(&args),

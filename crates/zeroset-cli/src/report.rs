@@ -7,10 +7,10 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
-use zeroset::contour::ContourReport;
-use zeroset::fit::cascade::FitReport;
-use zeroset::mesh::{DroppedComponents, Mesh, drop_small_components};
-use zeroset::reconstruct::{PlanReport, ReconstructParams, ReconstructReport};
+use zeroset::contour::{ContourReport, SharpReport};
+use zeroset::fit::cascade::{FitReport, PolishReport};
+use zeroset::mesh::{DroppedComponents, SimplifyReport};
+use zeroset::reconstruct::{PlanReport, ReconstructParams, ReconstructReport, StructureReport};
 use zeroset_io::{IoError, MeshFormat, WriteReport, shown, write_atomically};
 
 use crate::args::ReconstructArgs;
@@ -20,7 +20,7 @@ use crate::input::{Input, Origin, is_stream};
 use crate::memory;
 
 /// Version of the report's shape.
-const SCHEMA_VERSION: u32 = 1;
+pub(crate) const SCHEMA_VERSION: u32 = 1;
 
 /// Wall seconds of each stage.
 #[derive(Debug, Clone, Copy, Default, Serialize)]
@@ -34,7 +34,15 @@ pub(crate) struct Seconds {
     /// See `StageSeconds`.
     pub(crate) fit: f64,
     /// See `StageSeconds`.
+    pub(crate) structure: f64,
+    /// See `StageSeconds`.
+    pub(crate) polish: f64,
+    /// See `StageSeconds`.
     pub(crate) contour: f64,
+    /// See `StageSeconds`.
+    pub(crate) sharpen: f64,
+    /// See `StageSeconds`.
+    pub(crate) simplify: f64,
     /// See `StageSeconds`.
     pub(crate) attributes: f64,
     /// Writing the mesh.
@@ -60,10 +68,8 @@ pub(crate) struct ComponentsReport {
 }
 
 impl ComponentsReport {
-    /// Drops the pieces of fewer triangles, if there is a limit.
-    pub(crate) fn new(least_triangles: Option<usize>, mesh: &mut Mesh) -> Self {
-        let dropped = least_triangles.map(|least| drop_small_components(mesh, least)).unwrap_or_default();
-        Self { least_triangles, dropped }
+    pub(crate) fn new(done: &ReconstructReport) -> Self {
+        Self { least_triangles: done.plan.min_component, dropped: done.dropped }
     }
 }
 
@@ -106,9 +112,15 @@ pub(crate) struct Report<'a> {
     plan: &'a PlanReport,
     /// Null if nothing but the plan was made.
     fit: Option<&'a FitReport>,
+    /// Null in a draft, as are the polish and the sharpening.
+    structure: Option<&'a StructureReport>,
+    polish: Option<&'a PolishReport>,
     contour: Option<&'a ContourReport>,
+    sharp: Option<&'a SharpReport>,
     mesh: Option<Counts>,
     components: Option<ComponentsReport>,
+    /// Null if the mesh was not to be simplified.
+    simplify: Option<&'a SimplifyReport>,
     output: Option<OutputReport>,
     seconds: Seconds,
     threads: usize,
@@ -133,9 +145,13 @@ impl<'a> Report<'a> {
             origin: Origin::of(input),
             plan,
             fit: None,
+            structure: None,
+            polish: None,
             contour: None,
+            sharp: None,
             mesh: None,
             components: None,
+            simplify: None,
             output: None,
             seconds,
             threads: rayon::current_num_threads(),
@@ -149,7 +165,6 @@ impl<'a> Report<'a> {
     pub(crate) fn done(
         input: &'a Input,
         done: &'a ReconstructReport,
-        components: ComponentsReport,
         args: &ReconstructArgs,
         params: &ReconstructParams,
         output: Option<OutputReport>,
@@ -159,15 +174,23 @@ impl<'a> Report<'a> {
         let seconds = Seconds {
             plan: stages.plan,
             fit: stages.fit,
+            structure: stages.structure,
+            polish: stages.polish,
             contour: stages.contour,
+            sharpen: stages.sharpen,
+            simplify: stages.simplify,
             attributes: stages.attributes,
             ..seconds
         };
         Self {
             fit: Some(&done.fit),
+            structure: done.structure.as_ref(),
+            polish: done.polish.as_ref(),
             contour: Some(&done.contour),
+            sharp: done.sharp.as_ref(),
             mesh: Some(Counts { vertices: done.vertices, triangles: done.triangles }),
-            components: Some(components),
+            components: Some(ComponentsReport::new(done)),
+            simplify: done.simplify.as_ref(),
             output,
             ..Self::planned(input, &done.plan, args, params, seconds)
         }

@@ -48,9 +48,10 @@ fn a_mesh_agrees_with_itself() {
     assert_eq!(report["overall"]["f_score"], 1.0);
     assert_eq!(report["overall"]["mesh_samples"], 2000);
     assert!(report["near_edges"].is_object());
+    assert_eq!(report["mesh_self_intersections"]["pairs"], 0);
     let table =
         line(folder.path(), "compare truth.ply truth.ply --samples 2000 --sharp-angle 100 --seed 1").ok().stdout;
-    for part in ["mesh to truth", "F-score", "right orientation", "genus", "volume", "tau "] {
+    for part in ["mesh to truth", "F-score", "right orientation", "genus", "volume", "self-intersections", "tau "] {
         assert!(table.contains(part), "{part} in {table}");
     }
     assert!(!table.contains("creases"), "no edge of the block turns by 100 degrees: {table}");

@@ -137,8 +137,12 @@ fn the_report_has_its_fields() {
             "output",
             "plan",
             "points",
+            "polish",
             "schema_version",
             "seconds",
+            "sharp",
+            "simplify",
+            "structure",
             "threads",
             "unit",
             "unit_metres",
@@ -156,7 +160,20 @@ fn the_report_has_its_fields() {
     assert_eq!(report["points"]["dropped"]["non_finite"], 1);
     assert_eq!(report["plan"]["scene"], "object");
     assert_eq!(report["threads"], 2);
-    let stages = ["attributes", "contour", "fit", "plan", "read", "select", "total", "write"];
+    let stages = [
+        "attributes",
+        "contour",
+        "fit",
+        "plan",
+        "polish",
+        "read",
+        "select",
+        "sharpen",
+        "simplify",
+        "structure",
+        "total",
+        "write",
+    ];
     assert_eq!(names(&report["seconds"]), stages);
     assert!(stages.iter().all(|stage| report["seconds"][stage].as_f64().is_some_and(|s| s >= 0.0)));
     assert_eq!(names(&report["output"]), ["attributes_left_out", "bytes", "format", "local_offset", "path"]);

@@ -11,7 +11,7 @@ use common::{folder, line, run, zeroset};
 fn help_tells_what_there_is() {
     let folder = folder();
     let help = line(folder.path(), "--help").ok().stdout;
-    for command in ["reconstruct", "features", "fit2d", "sample", "compare", "info", "completions"] {
+    for command in ["reconstruct", "features", "fit2d", "sample", "simplify", "compare", "info", "completions"] {
         assert!(help.contains(command), "{command}");
         let own = line(folder.path(), &format!("{command} --help")).ok().stdout;
         assert!(own.contains("Usage: zeroset"), "{own}");
@@ -27,9 +27,13 @@ fn help_tells_what_there_is() {
         "--exclude",
         "--bounds",
         "--outliers",
+        "--quality",
+        "--smooth",
         "--screening",
         "--trim",
         "--min-component",
+        "--triangles",
+        "--max-error",
         "--attributes",
         "--threads",
         "--memory",
@@ -68,6 +72,16 @@ fn wrong_usage_exits_with_2() {
         "reconstruct in.xyz -o out.ply --threads 0",
         "reconstruct in.xyz -o out.ply --memory much",
         "reconstruct in.xyz -o out.ply --quiet --verbose",
+        "reconstruct in.xyz -o out.ply --triangles 0",
+        "reconstruct in.xyz -o out.ply --max-error 0",
+        "simplify in.ply",
+        "simplify in.ply -o out.ply",
+        "simplify in.ply -o out.ply --triangles 0",
+        "simplify in.ply -o out.ply --triangles some",
+        "simplify in.ply -o out.ply --max-error -1",
+        "simplify in.ply -o out.ply --max-error nan",
+        "simplify in.ply -o out.ply --max-error 1 --sharp-angle 180",
+        "simplify a.ply b.ply -o out.ply --triangles 5",
         "sample moon -o out.xyz",
         "sample torus",
         "sample torus -o out.xyz --points 0",
@@ -111,7 +125,7 @@ fn manual_pages_tell_every_option() {
     use clap::CommandFactory;
     let folder = folder();
     clap_mangen::generate_to(zeroset_cli::args::Args::command(), folder.path()).unwrap();
-    let commands = ["reconstruct", "features", "fit2d", "sample", "compare", "info", "completions"];
+    let commands = ["reconstruct", "features", "fit2d", "sample", "simplify", "compare", "info", "completions"];
     for command in commands {
         let page = std::fs::read_to_string(folder.path().join(format!("zeroset-{command}.1"))).unwrap();
         assert!(page.contains(".SH SYNOPSIS"), "{page}");

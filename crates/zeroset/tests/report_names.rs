@@ -23,14 +23,17 @@ fn a_comparison_keeps_its_names_and_comes_back_equal() {
             "crease_distance",
             "edge_band",
             "mesh",
+            "mesh_self_intersections",
             "near_edges",
             "occupancy",
             "overall",
             "tau",
             "truth",
-            "truth_diagonal"
+            "truth_diagonal",
+            "truth_self_intersections"
         ]
     );
+    assert_eq!(names(&json["mesh_self_intersections"]), ["listed", "pairs", "triangles"]);
     let figures = [
         "distances",
         "f_score",

@@ -4,6 +4,7 @@ mod compare;
 mod features;
 mod fit2d;
 mod shared;
+mod simplify;
 mod values;
 
 use std::num::NonZeroUsize;
@@ -16,8 +17,9 @@ use zeroset::sample::SceneKind;
 pub use compare::CompareArgs;
 pub use features::{FeaturesArgs, PostureChoice};
 pub use fit2d::{BasisChoice, BranchesChoice, DomainChoice, Fit2dArgs, NormalizationChoice, SolverChoice};
-pub use shared::{InputArgs, RunArgs, SceneArgs, SceneChoice, UpChoice};
-pub use values::{Bounds, Classes, OrOff, Rectangle};
+pub use shared::{InputArgs, RunArgs, SceneArgs, SceneChoice, SimplifyTarget, UpChoice};
+pub use simplify::SimplifyArgs;
+pub use values::{Bounds, Classes, OrAuto, OrOff, Rectangle};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -31,6 +33,7 @@ Examples:
   zeroset reconstruct west.laz east.laz -o town.glb --resolution 0.5
   zeroset reconstruct tile.laz -o houses.obj --classes 2,6 --bounds 84800,447400,84900,447500
   zeroset reconstruct statue.ply -o statue.stl --scene object --up y
+  zeroset reconstruct tile.laz -o light.ply --max-error 0.05
   zeroset reconstruct tile.laz --dry-run
 
 Lengths are in the unit of the input, mostly metres.
@@ -70,6 +73,8 @@ pub enum Command {
     Fit2d(Box<Fit2dArgs>),
     /// Make a test scene: a cloud, and the exact mesh behind it.
     Sample(SampleArgs),
+    /// Make a mesh of fewer triangles.
+    Simplify(SimplifyArgs),
     /// Measure how well a mesh, or features, agree with the truth.
     Compare(CompareArgs),
     /// Show what a cloud or a mesh holds.
@@ -88,6 +93,15 @@ pub enum AttributesChoice {
     Class,
 }
 
+/// How much is done for the surface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[allow(missing_docs, reason = "the names say it")]
+pub enum QualityChoice {
+    Draft,
+    Normal,
+    Fine,
+}
+
 /// Arguments of `zeroset reconstruct`.
 #[derive(Debug, Clone, clap::Args)]
 #[command(after_help = RECONSTRUCT_EXAMPLES)]
@@ -102,6 +116,13 @@ pub struct ReconstructArgs {
     /// What the points show.
     #[command(flatten)]
     pub scene: SceneArgs,
+    /// How much is done for the surface: draft (the zero set as fitted), normal (planes are found, F is polished, edges made
+    /// sharp) or fine (the same on finer cells) [default: draft].
+    #[arg(long, value_name = "WHICH", hide_possible_values = true)]
+    pub quality: Option<QualityChoice>,
+    /// Weight of smoothness in the polish, without unit, or `auto` [default: auto].
+    #[arg(long, value_name = "W|auto", value_parser = values::smooth)]
+    pub smooth: Option<OrAuto<f64>>,
     /// Finest cell, in the unit of the input [default: 1.5 times the spacing of the points].
     #[arg(long, value_name = "LENGTH", value_parser = values::positive, conflicts_with = "depth")]
     pub resolution: Option<f64>,
@@ -120,6 +141,9 @@ pub struct ReconstructArgs {
     /// Values of the nearest point that each vertex gets: off, rgb, intensity or class [default: rgb].
     #[arg(long, value_name = "WHICH", hide_possible_values = true)]
     pub attributes: Option<AttributesChoice>,
+    /// How far the mesh is simplified.
+    #[command(flatten)]
+    pub simplify: SimplifyTarget,
 
     /// Print what would be done, and the memory that it takes, and write no mesh.
     #[arg(long, help_heading = "Running")]

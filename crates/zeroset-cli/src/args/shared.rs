@@ -4,6 +4,7 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use clap::ValueEnum;
+use zeroset::mesh::SimplifyParams;
 
 use super::values::{self, Bounds, Classes, OrOff};
 
@@ -73,6 +74,26 @@ pub struct SceneArgs {
     /// Axis that points to the sky: x, y, z, -x, -y or -z.
     #[arg(long, value_name = "AXIS", default_value = "z", allow_hyphen_values = true, hide_possible_values = true)]
     pub up: UpChoice,
+}
+
+/// How far a mesh is simplified: until the number or the error is reached, whichever comes first.
+#[derive(Debug, Clone, Copy, clap::Args)]
+pub struct SimplifyTarget {
+    /// Simplify the mesh to N triangles.
+    #[arg(long, value_name = "N", help_heading = "Simplification")]
+    pub triangles: Option<NonZeroUsize>,
+    /// Simplify the mesh as far as it moves by no more than this, in the unit of the input.
+    #[arg(long, value_name = "LENGTH", value_parser = values::positive, help_heading = "Simplification")]
+    pub max_error: Option<f64>,
+}
+
+impl SimplifyTarget {
+    /// The same as the core understands it; `None` if nothing is asked for.
+    pub(crate) fn params(&self) -> Option<SimplifyParams> {
+        let triangles = self.triangles.map(NonZeroUsize::get);
+        let params = SimplifyParams { triangles, max_error: self.max_error, ..SimplifyParams::default() };
+        (triangles.is_some() || params.max_error.is_some()).then_some(params)
+    }
 }
 
 /// How to run.

@@ -42,6 +42,25 @@ impl<T> OrOff<T> {
     }
 }
 
+/// A value, or `auto`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum OrAuto<T> {
+    /// `auto`.
+    Auto,
+    /// The value.
+    Value(T),
+}
+
+impl<T> OrAuto<T> {
+    /// `None` for `auto`.
+    pub fn value(self) -> Option<T> {
+        match self {
+            Self::Auto => None,
+            Self::Value(value) => Some(value),
+        }
+    }
+}
+
 fn number(text: &str) -> Result<f64, String> {
     let value: f64 = text.trim().parse().map_err(|_| format!("`{text}` is not a number"))?;
     if value.is_finite() { Ok(value) } else { Err("a finite number is needed".into()) }
@@ -53,6 +72,10 @@ pub(super) fn positive(text: &str) -> Result<f64, String> {
 
 pub(super) fn not_negative(text: &str) -> Result<f64, String> {
     number(text).and_then(|v| if v >= 0.0 { Ok(v) } else { Err("it must not be negative".into()) })
+}
+
+pub(super) fn smooth(text: &str) -> Result<OrAuto<f64>, String> {
+    if text == "auto" { Ok(OrAuto::Auto) } else { positive(text).map(OrAuto::Value) }
 }
 
 /// Degrees, as typed.

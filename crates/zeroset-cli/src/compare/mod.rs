@@ -98,8 +98,14 @@ fn table(report: &CompareReport) -> String {
         figure(report.edge_band),
         figure(report.truth_diagonal)
     );
-    [columns(&distances), columns(&agreement), topologies(&["mesh", "truth"], &[&report.mesh, &report.truth]), lengths]
-        .join("\n")
+    let cutting = [&report.mesh_self_intersections, &report.truth_self_intersections];
+    let cutting = [
+        row("self-intersections", ["mesh", "truth"].map(String::from)),
+        row("pairs of triangles", cutting.map(|found| count(found.pairs))),
+        row("triangles", cutting.map(|found| count(found.triangles))),
+    ];
+    let topology = topologies(&["mesh", "truth"], &[&report.mesh, &report.truth]);
+    [columns(&distances), columns(&agreement), topology, columns(&cutting), lengths].join("\n")
 }
 
 /// How meshes hang together, side by side.

@@ -26,7 +26,7 @@ pub(crate) fn run(args: &FeaturesArgs) -> Result<(), CliError> {
     let console = Console::of(&args.run);
     let formats = check(args)?;
     let params = params(args, &formats);
-    threads::start(&args.run)?;
+    threads::start(args.run.threads)?;
 
     let progress = Progress::new(console);
     let (input, reading) = Input::read(&args.input, &progress)?;

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use zeroset_io::{CloudFormat, IoError, check_writable};
+use zeroset_io::{CloudFormat, IoError, MeshFormat, check_writable};
 
 use crate::error::CliError;
 
@@ -51,6 +51,15 @@ pub(crate) fn refuse_same(first: (&Path, &'static str), second: (&Path, &'static
 
 fn same(path: &Path, first: &'static str, second: &'static str) -> CliError {
     CliError::SameFile { path: path.to_path_buf(), first, second }
+}
+
+/// Refuses standard output for a mesh.
+pub(crate) fn refuse_mesh_stream(output: &Path) -> Result<(), CliError> {
+    if !is_stream(output) {
+        return Ok(());
+    }
+    let known: Vec<&str> = MeshFormat::KNOWN.iter().map(|(suffix, _)| *suffix).collect();
+    Err(CliError::MeshToStream { known: known.join(", ") })
 }
 
 pub(crate) fn is_stream(path: &Path) -> bool {

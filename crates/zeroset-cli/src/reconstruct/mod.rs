@@ -5,19 +5,19 @@ mod text;
 use std::time::Instant;
 
 use zeroset::cloud::Cloud;
-use zeroset::fit::cascade::Scene;
 use zeroset::mesh::Mesh;
 use zeroset::reconstruct::{
-    AttributeChoice, Plan, PlanReport, ReconstructError, ReconstructParams, ReconstructReport, Resolution, Trim, plan,
+    AttributeChoice, MinComponent, Plan, PlanReport, Quality, ReconstructError, ReconstructParams, ReconstructReport,
+    Resolution, Trim, plan,
 };
 use zeroset_io::{CloudFormat, MeshFormat, WriteOptions, shown, write_mesh};
 
-use crate::args::{AttributesChoice, OrOff, ReconstructArgs, SceneChoice};
+use crate::args::{AttributesChoice, OrAuto, OrOff, QualityChoice, ReconstructArgs, SceneChoice};
 use crate::console::{Console, Lines};
 use crate::error::{CliError, in_words};
-use crate::input::{Input, SURVEYED, announced, check_inputs, check_outputs, is_stream, scene, up};
+use crate::input::{Input, SURVEYED, announced, check_inputs, check_outputs, refuse_mesh_stream, scene, up};
 use crate::progress::Progress;
-use crate::report::{ComponentsReport, OutputReport, Report, Seconds};
+use crate::report::{OutputReport, Report, Seconds};
 use crate::{interrupt, memory, threads};
 
 pub(crate) fn run(args: &ReconstructArgs) -> Result<(), CliError> {
@@ -25,7 +25,7 @@ pub(crate) fn run(args: &ReconstructArgs) -> Result<(), CliError> {
     let console = Console::of(&args.run);
     let formats = check(args)?;
     let params = params(args, &formats);
-    threads::start(&args.run)?;
+    threads::start(args.run.threads)?;
 
     let progress = Progress::new(console);
     let (mut input, reading) = Input::read(&args.input, &progress)?;
@@ -56,9 +56,7 @@ pub(crate) fn run(args: &ReconstructArgs) -> Result<(), CliError> {
         }
         return report.write();
     }
-    let (mut mesh, mut done) = fit(plan, console, failed)?;
-    let components = ComponentsReport::new(least_triangles(args, done.plan.scene), &mut mesh);
-    (done.vertices, done.triangles) = (mesh.vertices.len(), mesh.triangles.len());
+    let (mesh, done) = fit(plan, console, failed)?;
     let output = write(args, &mesh, &done.plan, &input, console, &mut seconds)?;
     let seconds = seconds.until(start);
     lines.release();
@@ -66,9 +64,9 @@ pub(crate) fn run(args: &ReconstructArgs) -> Result<(), CliError> {
         console.say(&text::summary(&done, output, seconds.total, &input));
     }
     if console == Console::Verbose {
-        Console::complain(text::tables(&done, &components, &seconds, &mesh).trim_end());
+        Console::complain(text::tables(&done, &seconds, &mesh).trim_end());
     }
-    Report::done(&input, &done, components, args, &params, output, seconds).write()
+    Report::done(&input, &done, args, &params, output, seconds).write()
 }
 
 /// What was typed, as the core understands it.
@@ -81,12 +79,24 @@ fn params(args: &ReconstructArgs, formats: &[CloudFormat]) -> ReconstructParams 
             (None, Some(depth)) => Resolution::Depth(depth),
             (None, None) => Resolution::Auto,
         },
+        quality: match args.quality {
+            Some(QualityChoice::Draft) | None => Quality::Draft,
+            Some(QualityChoice::Normal) => Quality::Normal,
+            Some(QualityChoice::Fine) => Quality::Fine,
+        },
         screening: args.screening,
+        smoothness: args.smooth.and_then(OrAuto::value),
         trim: match args.trim {
             None => Trim::Auto,
             Some(OrOff::Off) => Trim::Off,
             Some(OrOff::Value(length)) => Trim::Length(length),
         },
+        min_component: match args.min_component {
+            None => MinComponent::Auto,
+            Some(OrOff::Off) => MinComponent::Off,
+            Some(OrOff::Value(least)) => MinComponent::Triangles(least.get()),
+        },
+        simplify: args.simplify.params(),
         attributes: match args.attributes {
             Some(AttributesChoice::Off) => AttributeChoice::Off,
             Some(AttributesChoice::Rgb) | None => AttributeChoice::Rgb,
@@ -100,10 +110,7 @@ fn params(args: &ReconstructArgs, formats: &[CloudFormat]) -> ReconstructParams 
 /// What can be told to be wrong before anything is read. Returns the formats of the inputs.
 fn check(args: &ReconstructArgs) -> Result<Vec<CloudFormat>, CliError> {
     if let Some(output) = &args.output {
-        if is_stream(output) {
-            let known: Vec<&str> = MeshFormat::KNOWN.iter().map(|(suffix, _)| *suffix).collect();
-            return Err(CliError::MeshToStream { known: known.join(", ") });
-        }
+        refuse_mesh_stream(output)?;
         MeshFormat::from_path(output)?;
     }
     let formats = check_inputs(&args.input.inputs)?;
@@ -132,19 +139,6 @@ fn announce(plan: &PlanReport, args: &ReconstructArgs, lines: &mut Lines) {
     }
     if let Some(wanted) = plan.wanted_resolution {
         lines.say(text::capped(plan, wanted));
-    }
-}
-
-/// Pieces of open scenes with fewer triangles than this are about two cells across or less; see
-/// [`drop_small_components`](zeroset::mesh::drop_small_components).
-const LEAST_TRIANGLES: usize = 100;
-
-/// The fewest triangles that a piece of the mesh must have. Objects keep all: what is small there may be meant.
-fn least_triangles(args: &ReconstructArgs, scene: Scene) -> Option<usize> {
-    match (args.min_component, scene) {
-        (Some(OrOff::Off), _) | (None, Scene::Object | Scene::Free) => None,
-        (Some(OrOff::Value(least)), _) => Some(least.get()),
-        (None, Scene::Terrain | Scene::Airborne) => Some(LEAST_TRIANGLES),
     }
 }
 

@@ -1,10 +1,12 @@
 //! What a reconstruction says to people.
 
-use zeroset::mesh::{Mesh, topology};
+use zeroset::fit::cascade::PolishParams;
+use zeroset::mesh::{Mesh, SimplifyParams, topology};
 use zeroset::reconstruct::{PlanReport, ReconstructReport};
 
 use crate::input::Input;
 use crate::report::{ComponentsReport, OutputReport, Seconds};
+use crate::simplify::outcome;
 use crate::table::{bytes, columns, count, decimals_for, length, name, pairs, position, significant};
 
 /// That memory made the result coarser than the points are.
@@ -41,8 +43,27 @@ pub(super) fn plan(plan: &PlanReport, input: &Input, memory: u64) -> String {
         ("memory", format!("about {}, of {} allowed", bytes(plan.expected_bytes), bytes(memory))),
         ("trim", plan.trim.map_or_else(|| "off".to_owned(), |trim| length(trim, unit))),
         ("screening", significant(plan.screening, 4)),
+        ("quality", name(plan.quality)),
+        ("polish", polish(plan.polish.as_ref())),
+        ("simplify", simplification(plan.simplify.as_ref())),
         ("attributes", name(plan.attributes)),
     ])
+}
+
+/// How F is polished.
+fn polish(params: Option<&PolishParams>) -> String {
+    params.map_or_else(
+        || "off".to_owned(),
+        |p| format!("{} rounds, smoothness {}", p.rounds, significant(p.smoothness, 4)),
+    )
+}
+
+/// How far the mesh is simplified.
+fn simplification(params: Option<&SimplifyParams>) -> String {
+    let triangles = params.and_then(|p| p.triangles).map(|n| format!("to {} triangles", count(n)));
+    let error = params.and_then(|p| p.max_error).map(|error| format!("within {}", significant(error, 4)));
+    let said: Vec<String> = triangles.into_iter().chain(error).collect();
+    if said.is_empty() { "off".to_owned() } else { said.join(", ") }
 }
 
 /// What was made, in a line, and what a user must know about the file.
@@ -60,6 +81,9 @@ pub(super) fn summary(done: &ReconstructReport, output: &OutputReport, seconds: 
     );
     if let Some(offset) = output.local_offset.filter(|offset| *offset != [0.0; 3]) {
         text += &format!("\nits coordinates are local: add {} for those of the input", position(offset, 0));
+    }
+    if let Some(report) = &done.simplify {
+        text += &format!("\nsimplified: {}", outcome(report));
     }
     if done.fit.outside_is_clear() == Some(false) {
         text += "\nthe surface runs out of the box of the points, so neither side is clearly outside: the upper one was taken; \
@@ -83,12 +107,7 @@ fn pieces(components: &ComponentsReport) -> String {
 }
 
 /// Stages, levels and the mesh, for `--verbose`.
-pub(super) fn tables(
-    done: &ReconstructReport,
-    components: &ComponentsReport,
-    seconds: &Seconds,
-    mesh: &Mesh,
-) -> String {
+pub(super) fn tables(done: &ReconstructReport, seconds: &Seconds, mesh: &Mesh) -> String {
     let clock = |s: f64| format!("{s:.3}");
     let words = |row: &[&str]| row.iter().map(|w| (*w).to_owned()).collect::<Vec<_>>();
     let mut stages = vec![words(&["stage", "seconds"])];
@@ -97,7 +116,11 @@ pub(super) fn tables(
         ("select", seconds.select),
         ("plan", done.seconds.plan),
         ("fit", done.seconds.fit),
+        ("structure", done.seconds.structure),
+        ("polish", done.seconds.polish),
         ("contour", done.seconds.contour),
+        ("sharpen", done.seconds.sharpen),
+        ("simplify", done.seconds.simplify),
         ("attributes", done.seconds.attributes),
         ("write", seconds.write),
         ("total", seconds.total),
@@ -139,7 +162,7 @@ pub(super) fn tables(
             },
         );
     }
-    text += &format!("{}\n", pieces(components));
+    text += &format!("{}\n", pieces(&ComponentsReport::new(done)));
     if let Some(peak) = crate::memory::peak() {
         text += &format!("{} of memory at most, {} expected\n", bytes(peak), bytes(done.plan.expected_bytes));
     }

@@ -2,8 +2,24 @@
 //!
 //! # What
 //! A tetrahedron on which F has both signs is active. The mesh has one vertex in each active tetrahedron, and one
-//! polygon around each lattice edge along which F changes sign: the ring of tetrahedra around that edge. A vertex is the mean
-//! of the places where F vanishes on its tetrahedron's edges.
+//! polygon around each edge along which F changes sign: the ring of tetrahedra around that edge. A vertex is the mean
+//! of the places where F vanishes on its tetrahedron's edges, or lies where the mesh bends least ([`placement`]).
+//!
+//! The tetrahedra are those of a lattice ([`contour`]), or of any mesh whose nodes are marked or bear values ([`contour_tetrahedra`]).
+//!
+//! ```
+//! use zeroset::contour::{ContourParams, LeastCurvature, Nodes, Placement, contour_tetrahedra};
+//! use zeroset::domain::SimplicialMesh;
+//! use zeroset::mesh::topology;
+//!
+//! // A segmentation: the nodes of a box that lie in a ball are marked.
+//! let mesh = SimplicialMesh::<3>::lattice([-1.0; 3], [1.0; 3], [10; 3])?;
+//! let marks: Vec<bool> = mesh.vertices().iter().map(|p| p.iter().map(|c| c * c).sum::<f64>() < 0.6).collect();
+//! let params = ContourParams { placement: Placement::LeastCurvature(LeastCurvature::default()) };
+//! let (surface, _) = contour_tetrahedra(&mesh, Nodes::Marks(&marks), &params)?;
+//! assert!(topology(&surface)?.closed);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 //!
 //! # Guaranteed
 //! Tetrahedra that share a face with both signs are neighbours in exactly the two rings of that face's crossed edges, so
@@ -21,16 +37,28 @@
 //! # Source
 //! G. M. Nielson, Dual Marching Tetrahedra, ISVC 2008, LNCS 5358.
 
+mod active;
+mod cells;
+mod chain;
+mod clip;
 mod dual;
 mod outline;
+pub mod placement;
 mod rings;
+mod sharp;
 pub mod simplicial;
 mod split;
+mod tetrahedra;
 mod triangulate;
 
 #[cfg(test)]
 mod tests;
 
-pub use dual::{ContourReport, contour};
+pub(crate) use clip::{HalfSpace, clip};
+pub use dual::{ContourParams, ContourReport, contour, contour_with};
 pub use outline::ColumnOutline;
+pub use placement::{Candidates, LeastCurvature, Norm, Placement, PlacementReport, Sweep};
+pub use sharp::SharpReport;
+pub(crate) use sharp::{Known, sharpen};
 pub use simplicial::{Branches, Polyline, zero_lines, zero_surface};
+pub use tetrahedra::{ContourError, Nodes, contour_tetrahedra};

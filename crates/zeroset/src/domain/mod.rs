@@ -34,6 +34,7 @@ pub use kuhn::{TETRAHEDRA, Tetrahedron, barycentric, tetrahedron_of};
 pub use lattice::{Lattice, LatticeError};
 pub use mask::{Mask, dilate, dilate_box, mask_get, mask_row, mask_set};
 pub(crate) use mask::{shift, shifted};
+pub(crate) use morton::encode as morton_code;
 pub use points::{Cells, LatticePoints};
 pub(crate) use simplicial::polygon_area;
 pub use simplicial::{Barycentric, DomainError, FacetPiece, Place, SegmentPiece, SimplicialMesh};

@@ -102,7 +102,7 @@ pub(super) fn assemble(
 /// The figures of what was found.
 pub(super) fn report(
     features: &Features,
-    fitted: &Fitted,
+    fitted: &Fitted<'_>,
     resolved: &Resolved,
     seconds: FeatureSeconds,
 ) -> FeatureReport {

@@ -8,16 +8,18 @@
 //!
 //! # How
 //! 1. *F* is fitted as for a mesh, with cells of 1.5 spacings. It tells inside from outside, and no more.
-//! 2. *Around each point* the plane of least squares through 16 neighbours gives a direction and how flat it is there (`surroundings`).
+//! 2. *Around each point* the plane of least squares through 16 neighbours, more where the noise is over a quarter of the spacing, gives
+//!    a direction and how flat it is there (`surroundings`).
 //! 3. *Regions* grow from the flattest seeds over neighbours within three deviations of the noise of a running plane (`planes::regions`). What is
 //!    left over in small groups bears faces of a few points; NEWE finds their one to four flats (`planes::leftovers`).
 //! 4. *Settling*: points are given to regions, and planes fitted to points by their probabilities near edges, in turn (`planes::settle`). Walls
 //!    of terrain stand and flats lie unless their points contradict ([`Posture`]).
 //! 5. *Flat or not*: a region that a quadric explains as well, together with the surface around it, is a part of something round; one whose
-//!    neighbours belong to nothing is clutter (`planes::flatness`).
+//!    neighbours belong to nothing is clutter; beside what is round, less evidence suffices (`planes::flatness`).
 //! 6. *Walls that were hardly scanned* stand under the straight rims of roofs beyond which the surface drops (`planes::walls`).
 //! 7. *Edges* are the parts of the lines of two planes beside which both have points (`sharp::straight`); *creases* with a curved side are found point
-//!    by point and joined (`sharp::creases`); *corners* are where three planes or more meet at the ends of edges (`sharp::corners`).
+//!    by point and joined (`sharp::creases`); *corners* are where three planes or more meet at the ends of edges (`sharp::corners`), and where
+//!    other ends come together (`sharp::joints`).
 //! 8. *Polygons* are the outlines of the regions, drawn out to edges and corners (`planes::polygons`, `planes::outline`).
 //!
 //! # Cost
@@ -31,7 +33,8 @@
 //! - Motion and scale change the result within the noise: a decision that hangs on a hair may fall the other way.
 //! - A face of fewer than 15 points, or narrower than about three spacings, is mostly missed. Sheets nearer to each other than two and a
 //!   half spacings mix: their planes come in pieces.
-//! - Noise of half the spacing of the points and more: 16 neighbours tell no direction then, and few planes are found or none.
+//! - With noise of half the spacing, faces of fewer than some 60 points and rims of holes that are a few noises wide are missed in part, and
+//!   strips of narrow cylinders are taken for planes. Noise over half of the spacing is not made up for.
 //! - Limits of area are held against the points of a region, each worth the square of the spacing; its polygon may have a little less.
 //! - Coplanar faces that come nearer than two spacings to each other are one plane, with several rings.
 //! - Walls that were inferred stand under the rim of the roof: eaves that overhang shift them.
@@ -56,6 +59,7 @@
 mod assemble;
 mod compare;
 mod detect;
+mod facets;
 mod model;
 mod moments;
 pub mod newe;
@@ -71,6 +75,8 @@ pub use compare::{
     FaceRecall, PlaneAgreement, compare_features,
 };
 pub use detect::detect;
+pub(crate) use detect::detect_with;
+pub(crate) use facets::{Facets, Flat, NearFacet};
 pub use model::{Corner, Edge, FeatureClass, FeatureKind, Features, Plane, PointFeature};
 pub use params::{FeatureError, FeatureParams, FeatureReport, FeatureSeconds, Posture};
 pub use triangulate::triangulate;

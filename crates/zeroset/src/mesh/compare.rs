@@ -47,8 +47,8 @@
 //! assert_eq!(report.overall.f_score, 1.0);
 //! ```
 
-use super::{Mesh, MeshError, SHARP_ANGLE, Topology, creases, topology};
-use crate::monitor::{Cancelled, Monitor, check};
+use super::{Mesh, MeshError, SHARP_ANGLE, SelfIntersections, Topology, creases, intersections, topology};
+use crate::monitor::{Cancelled, Monitor, Part, check};
 use crate::sample::{Chance, SurfaceSamples, sample_surface};
 use crate::spatial::TriangleTree;
 use crate::vec3::{self, Vec3};
@@ -62,6 +62,8 @@ const CHUNK: usize = 1 << 12;
 const OCCUPANCY_POINTS: usize = 20_000;
 /// Share of [`CompareParams::samples`] that are spread over the creases.
 const CREASE_SHARE: f64 = 1.0 / 6.0;
+/// Pairs of triangles that cut through each other that are listed, for each mesh.
+const LISTED_PAIRS: usize = 20;
 /// A winding number this close to 1/2 is computed again without expansions, whose error is at most 0.02 as a rule.
 const DOUBTFUL: f64 = 0.2;
 
@@ -205,6 +207,10 @@ pub struct CompareReport {
     pub mesh: Topology,
     /// How the truth hangs together.
     pub truth: Topology,
+    /// Where the mesh cuts through itself; the first 20 pairs are listed.
+    pub mesh_self_intersections: SelfIntersections,
+    /// Where the truth cuts through itself; the first 20 pairs are listed.
+    pub truth_self_intersections: SelfIntersections,
 }
 
 /// One of the meshes, made ready.
@@ -275,6 +281,11 @@ pub fn compare(
 
     monitor.stage("testing inside and outside");
     let occupancy = occupancy(&mesh, &truth, params.seed, monitor)?;
+    monitor.share(0.9);
+
+    monitor.stage("looking for self-intersections");
+    let mesh_self_intersections = mesh.self_intersections(&Part::new(monitor, 0.9..0.95))?;
+    let truth_self_intersections = truth.self_intersections(&Part::new(monitor, 0.95..1.0))?;
     monitor.share(1.0);
     Ok(CompareReport {
         tau,
@@ -286,6 +297,8 @@ pub fn compare(
         occupancy,
         mesh: mesh.topology,
         truth: truth.topology,
+        mesh_self_intersections,
+        truth_self_intersections,
     })
 }
 
@@ -313,6 +326,10 @@ impl<'a> Side<'a> {
     fn normal(&self, triangle: usize) -> Option<Vec3> {
         let [a, b, c] = self.mesh.triangles[triangle].map(|v| self.mesh.vertices[v as usize]);
         vec3::normalized(vec3::cross(vec3::sub(b, a), vec3::sub(c, a)))
+    }
+
+    fn self_intersections(&self, monitor: &dyn Monitor) -> Result<SelfIntersections, Cancelled> {
+        intersections::with_tree(&self.mesh, &self.tree, LISTED_PAIRS, monitor)
     }
 
     /// Pairs this surface's samples with the closest points of another.
@@ -346,7 +363,7 @@ impl<'a> Side<'a> {
 
 impl OneWay {
     /// `None` without distances.
-    fn of(mut distances: Vec<f64>) -> Option<Self> {
+    pub(super) fn of(mut distances: Vec<f64>) -> Option<Self> {
         let n = distances.len() as f64;
         let mean = distances.iter().sum::<f64>() / n;
         let rms = (distances.iter().map(|d| d * d).sum::<f64>() / n).sqrt();

@@ -4,6 +4,8 @@ mod compare;
 mod components;
 mod creases;
 mod edges;
+mod intersections;
+mod simplify;
 mod topology;
 
 #[cfg(test)]
@@ -14,6 +16,9 @@ pub use components::{DroppedComponents, drop_small_components};
 pub(crate) use creases::{Crease, crease_edges};
 pub use creases::{SHARP_ANGLE, creases};
 pub(crate) use edges::Edges;
+pub(crate) use intersections::Facet;
+pub use intersections::{SelfIntersectionError, SelfIntersections, self_intersections};
+pub use simplify::{Deviation, SimplifyError, SimplifyParams, SimplifyReport, simplify};
 pub use topology::{Component, Topology, topology};
 
 use crate::cloud::Attributes;

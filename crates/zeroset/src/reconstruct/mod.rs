@@ -18,16 +18,21 @@
 mod attributes;
 mod frame;
 mod plan;
+mod quality;
 mod run;
 mod scene;
+mod structure;
 
 pub(crate) use frame::Frame;
 pub use frame::Up;
-pub use plan::{AttributeChoice, Plan, PlanReport, ReconstructParams, Resolution, Trim, plan};
+pub use plan::{AttributeChoice, MinComponent, Plan, PlanReport, ReconstructParams, Resolution, Trim, plan};
+pub use quality::Quality;
 pub use run::{ReconstructReport, StageSeconds};
 pub use scene::SceneEvidence;
+pub use structure::StructureReport;
 
 use crate::fit::cascade::FitError;
+use crate::mesh::SimplifyError;
 use crate::monitor::Cancelled;
 
 /// A reconstruction that could not be made. Each message names the remedy.
@@ -84,10 +89,22 @@ pub enum ReconstructError {
         /// The value.
         value: f64,
     },
+    /// The mesh cannot be simplified.
+    #[error("{0}; check --triangles and --max-error")]
+    Simplify(SimplifyError),
     /// The fit failed.
     #[error(transparent)]
     Fit(#[from] FitError),
     /// The monitor asked to stop.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+}
+
+impl From<SimplifyError> for ReconstructError {
+    fn from(error: SimplifyError) -> Self {
+        match error {
+            SimplifyError::Cancelled(cancelled) => Self::Cancelled(cancelled),
+            other => Self::Simplify(other),
+        }
+    }
 }

@@ -5,9 +5,10 @@ use serde::Serialize;
 
 use super::frame::Frame;
 use super::scene::SceneEvidence;
-use super::{ReconstructError, Up};
+use super::{Quality, ReconstructError, Up};
 use crate::cloud::{Cloud, Spacing, noise};
-use crate::fit::cascade::{FitError, FitParams, Prepared, Scene};
+use crate::fit::cascade::{FitError, FitParams, PolishParams, Prepared, Scene};
+use crate::mesh::SimplifyParams;
 use crate::monitor::{Monitor, check};
 use crate::spatial::PointTree;
 
@@ -58,6 +59,19 @@ pub enum AttributeChoice {
     Class,
 }
 
+/// Which pieces of the mesh are dropped because they are small; see [`drop_small_components`](crate::mesh::drop_small_components).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum MinComponent {
+    /// None.
+    #[default]
+    Off,
+    /// Terrain and airborne scenes: those of fewer than 100 triangles, which are about two cells across. Objects keep all: what is
+    /// small there may be meant.
+    Auto,
+    /// Those of fewer triangles, but never the largest.
+    Triangles(usize),
+}
+
 /// What to reconstruct, and how.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReconstructParams {
@@ -67,10 +81,18 @@ pub struct ReconstructParams {
     pub up: Up,
     /// How fine.
     pub resolution: Resolution,
+    /// How much is done for the surface after the fit.
+    pub quality: Quality,
     /// Weight of the data term, see [`FitParams`]; `None` takes it from the noise of the points.
     pub screening: Option<f64>,
+    /// Weight of smoothness in the polish, without unit; `None` takes the usual one.
+    pub smoothness: Option<f64>,
     /// What is dropped far from the data.
     pub trim: Trim,
+    /// Which small pieces are dropped.
+    pub min_component: MinComponent,
+    /// How far the mesh is simplified; `None`: not at all.
+    pub simplify: Option<SimplifyParams>,
     /// Values for the vertices.
     pub attributes: AttributeChoice,
     /// Most bytes to use; the automatic resolution keeps within it and a given one is refused beyond it.
@@ -83,8 +105,12 @@ impl Default for ReconstructParams {
             scene: None,
             up: Up::default(),
             resolution: Resolution::default(),
+            quality: Quality::default(),
             screening: None,
+            smoothness: None,
             trim: Trim::default(),
+            min_component: MinComponent::default(),
+            simplify: None,
             attributes: AttributeChoice::default(),
             memory: 16 << 30,
         }
@@ -98,6 +124,8 @@ const RESOLUTION_REL: f64 = 1.5;
 /// The automatic trim of open scenes over the spacing of the points: bridges the shadows of buildings, and canals. On a real tile
 /// with eight points a square metre a canal needs 49.5.
 const TRIM_REL: f64 = 60.0;
+/// The automatic least number of triangles of a piece of an open scene.
+const LEAST_TRIANGLES: usize = 100;
 /// Noise, over the cell, that [`FitParams::SCREENING`] suits.
 const NOISE_REL: f64 = 0.25;
 /// The least and the most automatic weight of the data term.
@@ -147,6 +175,14 @@ pub struct PlanReport {
     pub trim: Option<f64>,
     /// Weight of the data term.
     pub screening: f64,
+    /// How much is done for the surface after the fit.
+    pub quality: Quality,
+    /// How F is polished; `None` in a draft.
+    pub polish: Option<PolishParams>,
+    /// The fewest triangles that a piece of the mesh must have; `None`: all pieces stay.
+    pub min_component: Option<usize>,
+    /// How far the mesh is simplified; `None`: not at all.
+    pub simplify: Option<SimplifyParams>,
     /// Values for the vertices.
     pub attributes: AttributeChoice,
 }
@@ -198,6 +234,7 @@ pub fn plan<'a>(
         Trim::Length(length) => Some(length),
         Trim::Auto | Trim::Off => None,
     };
+    params.simplify.as_ref().map_or(Ok(()), SimplifyParams::check)?;
     check(monitor)?;
     let (scene, scene_reason) = params
         .scene
@@ -207,7 +244,7 @@ pub fn plan<'a>(
     let screening = |resolution| params.screening.unwrap_or_else(|| screening_for(noise, resolution));
     let fit = |resolution| FitParams { screening: screening(resolution), ..FitParams::new(scene, resolution) };
     let wanted = match params.resolution {
-        Resolution::Auto => RESOLUTION_REL * spacing,
+        Resolution::Auto => params.quality.resolution_rel() * RESOLUTION_REL * spacing,
         Resolution::Spacings { terrain, body } => {
             let value = if matches!(scene, Scene::Terrain | Scene::Airborne) { terrain } else { body };
             if !(value.is_finite() && value > 0.0) {
@@ -255,6 +292,11 @@ pub fn plan<'a>(
         (Trim::Auto, Scene::Terrain | Scene::Airborne) => Some((TRIM_REL * spacing).max(8.0 * resolution)),
         (Trim::Length(_), _) => trim_length,
     };
+    let min_component = match (params.min_component, scene) {
+        (MinComponent::Off, _) | (MinComponent::Auto, Scene::Object | Scene::Free) => None,
+        (MinComponent::Auto, Scene::Terrain | Scene::Airborne) => Some(LEAST_TRIANGLES),
+        (MinComponent::Triangles(least), _) => Some(least),
+    };
     let offset = cloud.world_from_local;
     let occupied_cells = prepared.occupied_cells();
     let cells = occupied_cells.max(surface_cells(cloud.len(), spacing, resolution));
@@ -274,6 +316,10 @@ pub fn plan<'a>(
         expected_bytes: expected_bytes(cells, cloud.len()) as u64,
         trim,
         screening: screening(resolution),
+        quality: params.quality,
+        polish: params.quality.polish(screening(resolution), params.smoothness),
+        min_component,
+        simplify: params.simplify.clone(),
         attributes: params.attributes,
     };
     Ok(Plan { report, cloud, prepared, seconds: start.elapsed().as_secs_f64() })

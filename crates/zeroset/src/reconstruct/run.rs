@@ -1,5 +1,6 @@
 //! Fit, extract, trim, finish.
 
+use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Instant;
 
@@ -8,12 +9,13 @@ use serde::Serialize;
 
 use super::attributes::transfer;
 use super::frame::Frame;
-use super::{Plan, PlanReport, ReconstructError};
+use super::structure::{Structure, StructureReport};
+use super::{Plan, PlanReport, Quality, ReconstructError};
 use crate::cloud::Cloud;
-use crate::contour::{ColumnOutline, ContourReport, contour};
-use crate::fit::cascade::{self, FitReport, Scene};
-use crate::mesh::Mesh;
-use crate::monitor::{Monitor, Steps, check};
+use crate::contour::{ColumnOutline, ContourReport, HalfSpace, SharpReport, clip, contour};
+use crate::fit::cascade::{self, FitReport, PolishReport, Scene};
+use crate::mesh::{DroppedComponents, Mesh, SimplifyReport, drop_small_components, simplify};
+use crate::monitor::{Monitor, Part, Steps, check};
 use crate::spatial::PointTree;
 
 /// Wall seconds of each stage.
@@ -23,8 +25,16 @@ pub struct StageSeconds {
     pub plan: f64,
     /// The cascade.
     pub fit: f64,
+    /// Planes, where the surface is to be sharp.
+    pub structure: f64,
+    /// The polish of F.
+    pub polish: f64,
     /// Extraction with trim.
     pub contour: f64,
+    /// Vertices on planes, edges and corners.
+    pub sharpen: f64,
+    /// Dropping of small pieces and simplification.
+    pub simplify: f64,
     /// Values for the vertices.
     pub attributes: f64,
 }
@@ -36,8 +46,18 @@ pub struct ReconstructReport {
     pub plan: PlanReport,
     /// Level by level.
     pub fit: FitReport,
+    /// The planes; `None` in a draft.
+    pub structure: Option<StructureReport>,
+    /// The polish; `None` in a draft.
+    pub polish: Option<PolishReport>,
     /// The extraction.
     pub contour: ContourReport,
+    /// What was made sharp; `None` in a draft.
+    pub sharp: Option<SharpReport>,
+    /// What became of small pieces.
+    pub dropped: DroppedComponents,
+    /// The simplification; `None` if none was asked for.
+    pub simplify: Option<SimplifyReport>,
     /// Vertices of the mesh.
     pub vertices: usize,
     /// Triangles of the mesh.
@@ -55,20 +75,44 @@ impl Plan<'_> {
         let Self { report: plan, cloud, prepared, seconds } = self;
         let mut seconds = StageSeconds { plan: seconds, ..StageSeconds::default() };
 
+        let whole = monitor;
+        let unsimplified = if plan.simplify.is_some() { BEFORE_SIMPLIFY } else { 1.0 };
+        let monitor = &Part::new(whole, 0.0..unsimplified);
         let start = Instant::now();
-        let (field, fit) = prepared.fit(monitor)?;
+        let shares = Shares::of(plan.quality);
+        let (field, fit) = prepared.fit(&Part::new(monitor, 0.0..shares.fit / cascade::SHARE))?;
         seconds.fit = start.elapsed().as_secs_f64();
 
         let frame = Frame::new(plan.up, plan.scene);
+        let start = Instant::now();
+        let structure = match plan.polish {
+            Some(_) => Some(Structure::find(cloud, &plan, &field, &Part::new(monitor, shares.fit..shares.structure))?),
+            None => None,
+        };
+        seconds.structure = start.elapsed().as_secs_f64();
+        let start = Instant::now();
+        let (field, polish) = match (&structure, plan.polish) {
+            (Some(structure), Some(params)) => {
+                monitor.stage("polishing");
+                let (field, report) = structure.polish(&field, cloud, frame, params, monitor)?;
+                monitor.share(shares.polish);
+                (field, Some(report))
+            }
+            _ => (field, None),
+        };
+        seconds.polish = start.elapsed().as_secs_f64();
         monitor.stage("extracting the surface");
         let start = Instant::now();
         let keep = Keep::new(cloud, &plan, frame);
         check(monitor)?;
-        let watch = Watch::new(monitor, plan.occupied_cells);
+        let watch = Watch::new(monitor, shares.polish..shares.contour, plan.occupied_cells);
         let (mut mesh, contour) =
             contour(&field, |p| watch.goes_on() && keep.as_ref().is_none_or(|keep| keep.contains(p)));
         drop(field);
         check(monitor)?;
+        if plan.trim.is_some() && matches!(plan.scene, Scene::Terrain | Scene::Airborne) {
+            cut_at_box(&mut mesh, cloud, frame, plan.resolution);
+        }
         if mesh.triangles.is_empty() {
             return Err(ReconstructError::NoSurface);
         }
@@ -76,20 +120,88 @@ impl Plan<'_> {
         mesh.world_from_local = cloud.world_from_local;
         mesh.crs.clone_from(&cloud.crs);
         seconds.contour = start.elapsed().as_secs_f64();
-
-        monitor.stage("carrying values over");
         let start = Instant::now();
-        transfer(cloud, &mut mesh, plan.attributes, monitor, AFTER_CONTOUR..1.0)?;
+        let sharp = structure.as_ref().map(|structure| {
+            monitor.stage("making edges sharp");
+            structure.sharpen(&mut mesh, cloud, plan.resolution)
+        });
+        check(monitor)?;
+        monitor.share(AFTER_CONTOUR);
+        seconds.sharpen = start.elapsed().as_secs_f64();
+
+        let start = Instant::now();
+        let dropped = plan.min_component.map(|least| drop_small_components(&mut mesh, least)).unwrap_or_default();
+        let mut simplified = None;
+        if let Some(params) = &plan.simplify {
+            let part = Part::new(whole, unsimplified * AFTER_CONTOUR..AFTER_CONTOUR);
+            let (lighter, report) = simplify(&mesh, params, &part)?;
+            (mesh, simplified) = (lighter, Some(report));
+        }
+        seconds.simplify = start.elapsed().as_secs_f64();
+
+        whole.stage("carrying values over");
+        let start = Instant::now();
+        transfer(cloud, &mut mesh, plan.attributes, whole, AFTER_CONTOUR..1.0)?;
         seconds.attributes = start.elapsed().as_secs_f64();
-        monitor.share(1.0);
+        whole.share(1.0);
 
         let (vertices, triangles) = (mesh.vertices.len(), mesh.triangles.len());
-        Ok((mesh, ReconstructReport { plan, fit, contour, vertices, triangles, seconds }))
+        let simplify = simplified;
+        let structure = structure.map(|structure| structure.report);
+        let report = ReconstructReport {
+            plan,
+            fit,
+            structure,
+            polish,
+            contour,
+            sharp,
+            dropped,
+            simplify,
+            vertices,
+            triangles,
+            seconds,
+        };
+        Ok((mesh, report))
     }
 }
 
-/// The share of the whole that is done after the extraction.
+/// What the steps up to the extraction are of the whole where the mesh is simplified after them.
+const BEFORE_SIMPLIFY: f64 = 0.7;
+/// The share of the whole that is done after the extraction, or after the simplification if there is one.
 const AFTER_CONTOUR: f64 = 0.97;
+
+/// The shares of the whole that are done after each stage up to the extraction.
+struct Shares {
+    fit: f64,
+    structure: f64,
+    polish: f64,
+    contour: f64,
+}
+
+impl Shares {
+    fn of(quality: Quality) -> Self {
+        match quality {
+            Quality::Draft => Self { fit: 0.9, structure: 0.9, polish: 0.9, contour: AFTER_CONTOUR },
+            Quality::Normal => Self { fit: 0.3, structure: 0.55, polish: 0.75, contour: 0.8 },
+            Quality::Fine => Self { fit: 0.25, structure: 0.4, polish: 0.75, contour: 0.8 },
+        }
+    }
+}
+
+/// Vertices this near to the box, in cells, are moved onto it.
+const SNAP: f64 = 0.05;
+
+/// Cuts open ground where the points end: the surface goes no farther than their box, seen from above.
+fn cut_at_box(mesh: &mut Mesh, cloud: &Cloud, frame: Frame, cell: f64) {
+    let (low, high) = crate::domain::bounds(cloud.points.iter().map(|&p| frame.enter(p)));
+    for axis in 0..2 {
+        for (sign, offset) in [(1.0, high[axis]), (-1.0, -low[axis])] {
+            let mut normal = [0.0; 3];
+            normal[axis] = sign;
+            clip(mesh, HalfSpace { normal, offset }, SNAP * cell);
+        }
+    }
+}
 
 /// Counts the polygons of the extraction for a monitor.
 struct Watch<'a> {
@@ -104,8 +216,8 @@ impl<'a> Watch<'a> {
     /// Polygons for each occupied cell, about: one for each lattice edge that the surface crosses.
     const POLYGONS_A_CELL: usize = 5;
 
-    fn new(monitor: &'a dyn Monitor, occupied_cells: usize) -> Self {
-        let steps = Steps::new(monitor, cascade::SHARE..AFTER_CONTOUR, Self::POLYGONS_A_CELL * occupied_cells);
+    fn new(monitor: &'a dyn Monitor, shares: Range<f64>, occupied_cells: usize) -> Self {
+        let steps = Steps::new(monitor, shares, Self::POLYGONS_A_CELL * occupied_cells);
         Self { steps, polygons: AtomicUsize::new(0), cancelled: AtomicBool::new(false) }
     }
 

@@ -22,6 +22,8 @@
 //! # Not guaranteed
 //! Distances whose square overflows (coordinates over about 1e150) come out infinite.
 
+mod moving;
+mod overlap;
 mod points;
 mod ray;
 mod tree;
@@ -31,7 +33,9 @@ mod winding;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use moving::MovingBoxes;
 pub use points::{Neighbour, PointTree};
 pub use ray::RayHit;
+pub(crate) use triangles::closest_on_triangle;
 pub use triangles::{ClosestPoint, TriangleTree};
 pub use winding::WindingNumber;

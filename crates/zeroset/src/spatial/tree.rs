@@ -26,6 +26,12 @@ impl Aabb {
         Self { low: vec3::min(self.low, other.low), high: vec3::max(self.high, other.high) }
     }
 
+    /// Whether two boxes have a point in common.
+    #[inline]
+    pub(super) fn meets(&self, other: &Self) -> bool {
+        (0..3).all(|a| self.low[a] <= other.high[a] && other.low[a] <= self.high[a])
+    }
+
     /// Squared distance to the box, 0 inside.
     ///
     /// Each operation rounds monotonically and in the order of [`vec3::distance_squared`], so the result never exceeds

@@ -131,6 +131,14 @@ impl TriangleTree {
         if radius >= 0.0 { self.closest_to(q, radius * radius) } else { None }
     }
 
+    /// Calls `visit` with every triangle at a distance of at most `radius` and its squared distance, in an order that the triangles
+    /// determine.
+    pub(crate) fn visit_within(&self, q: [f64; 3], radius: f64, visit: impl FnMut(usize, f64)) {
+        if vec3::is_finite(q) && radius >= 0.0 {
+            self.tree.nearest_first(q, &mut Within { q, limit_squared: radius * radius, visit });
+        }
+    }
+
     fn closest_to(&self, q: Vec3, limit_squared: f64) -> Option<ClosestPoint> {
         if !vec3::is_finite(q) {
             return None;
@@ -173,6 +181,30 @@ impl Collector<Triangle> for Closest {
     }
 }
 
+/// Hands on all triangles within a distance.
+struct Within<F: FnMut(usize, f64)> {
+    q: Vec3,
+    limit_squared: f64,
+    visit: F,
+}
+
+impl<F: FnMut(usize, f64)> Collector<Triangle> for Within<F> {
+    #[inline]
+    fn limit(&self) -> (f64, usize) {
+        (self.limit_squared, usize::MAX)
+    }
+
+    #[inline]
+    fn leaf(&mut self, items: &[Triangle]) {
+        for triangle in items {
+            let distance_squared = vec3::distance_squared(closest_on_triangle(triangle.corners, self.q), self.q);
+            if distance_squared <= self.limit_squared {
+                (self.visit)(triangle.index, distance_squared);
+            }
+        }
+    }
+}
+
 /// The point of segment `ab` closest to `q`.
 fn closest_on_segment(a: Vec3, b: Vec3, q: Vec3) -> Vec3 {
     let along = vec3::sub(b, a);
@@ -195,7 +227,7 @@ fn closest_on_segment(a: Vec3, b: Vec3, q: Vec3) -> Vec3 {
 /// The foot of the perpendicular counts if it lies strictly within all three edges; otherwise the nearest of the
 /// closest points on the edges is the answer. A needle whose normal has drowned in rounding fails the first test or
 /// lands on its edges anyway, so its answer is right to the width of the needle.
-pub(super) fn closest_on_triangle([a, b, c]: [Vec3; 3], q: Vec3) -> Vec3 {
+pub(crate) fn closest_on_triangle([a, b, c]: [Vec3; 3], q: Vec3) -> Vec3 {
     let (ab, ac, aq) = (vec3::sub(b, a), vec3::sub(c, a), vec3::sub(q, a));
     let normal = vec3::cross(ab, ac);
     let area_squared = vec3::norm_squared(normal);

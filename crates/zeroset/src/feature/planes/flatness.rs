@@ -16,19 +16,47 @@ pub(in crate::feature) struct Bend {
     ratio: f64,
     /// The residuals that it leaves, over those of the region's own points from their plane, at most: else it explains nothing.
     fits: f64,
+    /// Whether the surface may be round: then it also counts what a quadric wins against the noise.
+    may_be_round: bool,
 }
 
 impl Bend {
     /// For bodies, which are round as often as flat.
-    pub(in crate::feature) const OF_BODIES: Self = Self { ratio: 1.2, fits: 1.8 };
+    pub(in crate::feature) const OF_BODIES: Self = Self { ratio: 1.2, fits: 1.8, may_be_round: true };
     /// For terrain, where roofs are flat and what stands on them spoils the fit of any quadric. With the values for bodies a tenth of
     /// the roofs of a real town are lost.
-    pub(in crate::feature) const OF_TERRAIN: Self = Self { ratio: 1.5, fits: 1.2 };
+    pub(in crate::feature) const OF_TERRAIN: Self = Self { ratio: 1.5, fits: 1.2, may_be_round: false };
 }
+
+/// What a quadric must win for a region to be round.
+#[derive(Debug, Clone, Copy)]
+struct Evidence {
+    /// Of the sum of squares of the region's own points, in variances that it leaves.
+    by_itself: f64,
+    /// Sum of squares of the plane over that of the quadric, on the region's own points.
+    sagging: f64,
+    /// The same in a window around the region.
+    around: f64,
+    /// The variance that it leaves in the window, over that of the noise, at most.
+    noise_alone: f64,
+}
+
+impl Evidence {
+    /// Of any region. Three more parameters win 16 variances once in a thousand times by chance, and a large face may be seen to sag by less
+    /// than its noise.
+    const ALONE: Self = Self { by_itself: 16.0, sagging: 1.1, around: 1.44, noise_alone: 1.35 };
+    /// Of a region that borders on others that are round: it is likely to be round, too.
+    const BESIDE_ROUND: Self = Self { by_itself: 6.0, sagging: 1.03, around: 1.1, noise_alone: 1.5 };
+}
+
+/// The share of a region's neighbours in other regions, or in none, that lie on what is round, from which the region borders on it.
+const BESIDE: f64 = 0.2;
 
 /// That much of the sum of squares must be won, in variances of the noise, for the quadric not to win by chance: with three more
 /// parameters, 25 is won once in 10^5 times.
 const BY_CHANCE: f64 = 25.0;
+/// In deviations of a mean of squares: how much worse the region's own points may lie on it than the others.
+const NO_WORSE: f64 = 2.5;
 /// On the region's own points the quadric of the wider surroundings may leave so many times the residuals of the plane. A flat face
 /// that runs into a round one is not explained by the quadric of both.
 const AS_GOOD: f64 = 1.08;
@@ -37,6 +65,8 @@ const SELECTED: f64 = 40.0;
 /// The surroundings that are looked at hold so many times the points of the region: narrow ones, as no quadric suits a wide part of an
 /// organic shape, and wide ones, as a patch of a sphere is told from flat only when its height is some deviations of the noise.
 const WIDER: [f64; 3] = [1.5, 2.5, 4.0];
+/// Where only noise is left, wider ones tell more.
+const WIDEST: f64 = 8.0;
 /// Points of the windows on a region.
 const WINDOWS: [usize; 3] = [100, 200, 400];
 /// Regions of more points are wide by themselves.
@@ -55,7 +85,45 @@ const LEAST_WIDTH: f64 = 3.0;
 
 /// For each region whether it is flat.
 pub(in crate::feature) fn flat_regions(partition: &Partition<'_>) -> Vec<bool> {
-    members(partition).into_par_iter().enumerate().map(|(region, points)| is_flat(partition, region, &points)).collect()
+    let members = members(partition);
+    let mut keep: Vec<bool> =
+        members.par_iter().enumerate().map(|(region, points)| is_flat(partition, region, points)).collect();
+    if partition.limits.bend.may_be_round {
+        give_up_beside_round(partition, &members, &mut keep);
+    }
+    keep
+}
+
+/// Under much noise each strip of a narrow cylinder alone is nearly flat: some are found out, and then those beside them.
+fn give_up_beside_round(partition: &Partition<'_>, members: &[Vec<u32>], keep: &mut [bool]) {
+    loop {
+        let round: Vec<bool> = (0..members.len())
+            .into_par_iter()
+            .map(|region| keep[region] && continues_round(partition, region, &members[region], keep))
+            .collect();
+        if !round.contains(&true) {
+            return;
+        }
+        keep.iter_mut().zip(round).for_each(|(keep, round)| *keep &= !round);
+    }
+}
+
+/// Whether a region borders on regions that are given up, and may be round as well.
+fn continues_round(partition: &Partition<'_>, region: usize, members: &[u32], keep: &[bool]) -> bool {
+    let (mut others, mut round) = (0, 0);
+    for &j in members.iter().flat_map(|&i| partition.around.of(i as usize)) {
+        let label = partition.labels[j as usize];
+        if label != region as u32 {
+            others += 1;
+            round += usize::from(label != NONE && !keep[label as usize]);
+        }
+    }
+    if (round as f64) < BESIDE * f64::from(others) {
+        return false;
+    }
+    let mut moments = Moments::default();
+    members.iter().for_each(|&i| moments.add(partition.points[i as usize]));
+    moments.fit().is_none_or(|fit| is_round(partition, &fit, members, &Evidence::BESIDE_ROUND))
 }
 
 /// The points of each region, ascending.
@@ -81,6 +149,7 @@ fn is_flat(partition: &Partition<'_>, region: usize, members: &[u32]) -> bool {
     fit.deviations[1] > LEAST_WIDTH * fit.deviations[0]
         && aligned > ALIGNED * members.len() as f64
         && !is_curved(partition, region, &fit, members)
+        && !(partition.limits.bend.may_be_round && is_round(partition, &fit, members, &Evidence::ALONE))
 }
 
 /// For each region whether its points are neighbours of one another, and not scattered among points of no region.
@@ -116,6 +185,33 @@ fn is_curved(partition: &Partition<'_>, region: usize, fit: &Fit, members: &[u32
     })
 }
 
+/// Whether a quadric explains the region's own points better than the plane, or leaves no more than noise in its wider surroundings.
+fn is_round(partition: &Partition<'_>, fit: &Fit, members: &[u32], evidence: &Evidence) -> bool {
+    let n = members.len();
+    let height = Heights::new(fit, partition);
+    let own = height.sums(members.iter().copied());
+    let Some(quadric) = own.quadric() else { return false };
+    let (flat, curved) = (own.flat_squares(), own.squares(&quadric));
+    let variance = curved / (n as f64 - 6.0);
+    if flat - curved > evidence.by_itself * variance && flat > evidence.sagging * curved {
+        return true;
+    }
+    let variance = partition.limits.noise.powi(2);
+    n <= WIDE_ENOUGH
+        && WIDER.into_iter().chain([WIDEST]).any(|times| {
+            let window = surroundings(partition, fit.normal, members.to_vec(), (times * n as f64) as usize);
+            let all = height.sums(window.into_iter());
+            let Some(quadric) = all.quadric() else { return false };
+            let (flat, curved) = (all.flat_squares(), all.squares(&quadric));
+            let mean = curved / all.gram[(0, 0)];
+            let no_worse = (1.0 + NO_WORSE * (2.0 / n as f64).sqrt()) * mean * n as f64;
+            mean < evidence.noise_alone * variance
+                && flat > evidence.around * curved
+                && flat - curved > BY_CHANCE * variance
+                && own.squares(&quadric) < no_worse
+        })
+}
+
 /// Whether a quadric explains the surface in a window better than a plane does, and the region's points there about as well.
 fn curves(partition: &Partition<'_>, region: usize, fit: &Fit, window: &[u32]) -> bool {
     let height = Heights::new(fit, partition);
@@ -123,7 +219,7 @@ fn curves(partition: &Partition<'_>, region: usize, fit: &Fit, window: &[u32]) -
     let Some(quadric) = all.quadric() else { return false };
     let (flat, curved) = (all.flat_squares(), all.squares(&quadric));
     let noise = partition.limits.noise;
-    let Bend { ratio, fits } = partition.limits.bend;
+    let Bend { ratio, fits, .. } = partition.limits.bend;
     if flat < ratio * ratio * curved || flat - curved < BY_CHANCE * noise * noise {
         return false;
     }

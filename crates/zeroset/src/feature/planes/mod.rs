@@ -41,7 +41,7 @@ impl Flats {
     /// Fills the partition and finds the walls.
     pub(in crate::feature) fn find(
         partition: &mut Partition<'_>,
-        fitted: &Fitted,
+        fitted: &Fitted<'_>,
         resolved: &Resolved,
         monitor: &dyn Monitor,
     ) -> Result<Self, FeatureError> {
@@ -153,7 +153,7 @@ const VOTERS: usize = 400;
 const CLEAR: f64 = 0.3;
 
 /// The planes with their normals turned outward.
-fn oriented(partition: &Partition<'_>, fitted: &Fitted) -> Vec<Flat> {
+fn oriented(partition: &Partition<'_>, fitted: &Fitted<'_>) -> Vec<Flat> {
     let flat = |(region, members): (&Region, &Vec<u32>)| {
         let (mut cosine, mut count) = (0.0, 0.0);
         for &i in members.iter().step_by(members.len().div_ceil(VOTERS).max(1)) {

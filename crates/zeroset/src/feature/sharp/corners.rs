@@ -3,11 +3,9 @@
 use nalgebra::{Matrix3, Vector3};
 use rustc_hash::FxHashMap;
 
-use super::creases::Crease;
-use super::straight::{EdgeLimits, StraightEdge};
+use super::straight::StraightEdge;
 use super::support::{Flat, Support};
 use crate::feature::model::FeatureKind;
-use crate::spatial::PointTree;
 use crate::vec3::{self, Vec3};
 
 /// A corner in the making.
@@ -23,13 +21,13 @@ pub(in crate::feature) struct Meeting {
 
 /// How far the end of an edge may lie from its corner, over the spacing. An edge ends where the last part of its line with data on both
 /// sides ends, mostly within two spacings of the corner.
-const SNAP: f64 = 4.0;
+pub(super) const SNAP: f64 = 4.0;
 /// Corners nearer to each other than this, over the spacing, are one if one position lies on all their planes.
 const SAME: f64 = 2.0;
 /// The least product of three normals: under it the position is not known well.
 const LEAST_PRODUCT: f64 = 0.05;
 /// A plane belongs to a corner if it passes within so many deviations of the noise.
-const ON_PLANE: f64 = 4.0;
+pub(super) const ON_PLANE: f64 = 4.0;
 
 /// The corners, and the edges cut or drawn out to them.
 pub(in crate::feature) fn corners(
@@ -177,7 +175,7 @@ fn meeting_point(flats: &[Flat], planes: &[u32], near: Vec3) -> Option<Vec3> {
 }
 
 /// Leaves out edges that their corners turned around or left without length, and corners where fewer than two edges stay.
-fn drop_reversed(meetings: &mut Vec<Meeting>, edges: &mut Vec<StraightEdge>) {
+pub(super) fn drop_reversed(meetings: &mut Vec<Meeting>, edges: &mut Vec<StraightEdge>) {
     let mut next = 0;
     let new: Vec<Option<usize>> = edges
         .iter()
@@ -216,155 +214,4 @@ pub(in crate::feature) fn kind(kinds: impl Iterator<Item = FeatureKind>) -> Feat
         (false, true, false) => FeatureKind::Concave,
         _ => FeatureKind::Unknown,
     }
-}
-
-/// An end of an edge that lies at no corner yet.
-struct Loose {
-    position: Vec3,
-    /// Unit direction of the edge there.
-    direction: Vec3,
-    edge: LooseEdge,
-    end: usize,
-}
-
-#[derive(Clone, Copy, PartialEq)]
-enum LooseEdge {
-    Straight(usize),
-    Crease(usize),
-}
-
-impl Loose {
-    /// Whether the edge may end at a position: creases may, straight edges only near their line.
-    fn passes(&self, p: Vec3, edges: &[StraightEdge], tolerance: f64) -> bool {
-        let LooseEdge::Straight(number) = self.edge else { return true };
-        let (edge, d) = (&edges[number], vec3::sub(p, edges[number].origin));
-        vec3::norm(vec3::cross(d, edge.direction)) <= tolerance
-    }
-}
-
-/// Ends creases at the corners near their ends, and makes corners where three loose ends or more come near one another.
-pub(in crate::feature) fn join_creases(
-    meetings: &mut Vec<Meeting>,
-    flats: &[Flat],
-    edges: &mut Vec<StraightEdge>,
-    creases: &mut [Crease],
-    limits: EdgeLimits,
-) {
-    let EdgeLimits { spacing, noise, .. } = limits;
-    let loose = loose_ends(meetings, edges, creases);
-    let reach = SNAP * spacing;
-    let corners = PointTree::new(&meetings.iter().map(|m| m.position).collect::<Vec<_>>());
-    let near_corner = |l: &Loose| corners.nearest_within(l.position, reach).is_some();
-    let (at_corner, free): (Vec<Loose>, Vec<Loose>) = loose.into_iter().partition(near_corner);
-    let at_corner = at_corner.into_iter().filter(|l| matches!(l.edge, LooseEdge::Crease(_)));
-    for end in at_corner {
-        if let Some(nearest) = corners.nearest_within(end.position, reach) {
-            attach(&mut meetings[nearest.index], &end, edges, creases);
-        }
-    }
-    let tree = PointTree::new(&free.iter().map(|l| l.position).collect::<Vec<_>>());
-    let mut used = vec![false; free.len()];
-    let mut found = Vec::new();
-    for i in 0..free.len() {
-        if used[i] {
-            continue;
-        }
-        tree.k_nearest(free[i].position, MOST_ENDS, &mut found);
-        let mut near: Vec<usize> = Vec::new();
-        for n in found.iter().filter(|n| n.distance_squared <= reach * reach && !used[n.index]) {
-            // Of a short edge only the nearer end.
-            if near.iter().all(|&known| free[known].edge != free[n.index].edge) {
-                near.push(n.index);
-            }
-        }
-        if near.len() < 3 {
-            continue;
-        }
-        let Some(position) = nearest_to_lines(near.iter().map(|&n| &free[n]), reach) else { continue };
-        // A straight edge ends where its line passes.
-        near.retain(|&n| free[n].passes(position, edges, ON_PLANE * noise));
-        if near.len() < 3 {
-            continue;
-        }
-        let mut meeting = Meeting { position, planes: Vec::new(), ends: Vec::new(), creases: Vec::new() };
-        for n in near {
-            used[n] = true;
-            attach(&mut meeting, &free[n], edges, creases);
-        }
-        meetings.push(meeting);
-    }
-    for meeting in meetings.iter_mut() {
-        meeting.planes.sort_unstable();
-        meeting.planes.dedup();
-        meeting.planes.retain(|&plane| flats[plane as usize].distance(meeting.position).abs() <= ON_PLANE * noise);
-    }
-    drop_reversed(meetings, edges);
-}
-
-/// The most ends that meet in a corner.
-const MOST_ENDS: usize = 8;
-
-fn loose_ends(meetings: &[Meeting], edges: &[StraightEdge], creases: &[Crease]) -> Vec<Loose> {
-    let mut taken = vec![[false; 2]; edges.len()];
-    for &(edge, end) in meetings.iter().flat_map(|m| &m.ends) {
-        taken[edge][end] = true;
-    }
-    let mut loose = Vec::new();
-    for (number, edge) in edges.iter().enumerate() {
-        for end in (0..2).filter(|&end| !taken[number][end]) {
-            let (position, direction) = (edge.end(end), edge.direction);
-            loose.push(Loose { position, direction, edge: LooseEdge::Straight(number), end });
-        }
-    }
-    for (number, crease) in creases.iter().enumerate() {
-        let line = &crease.polyline;
-        let n = line.len();
-        if n < 2 || line[0] == line[n - 1] {
-            continue;
-        }
-        for (end, from, to) in [(0, 2.min(n - 1), 0), (1, n - 1 - 2.min(n - 1), n - 1)] {
-            if let Some(direction) = vec3::normalized(vec3::sub(line[to], line[from])) {
-                loose.push(Loose { position: line[to], direction, edge: LooseEdge::Crease(number), end });
-            }
-        }
-    }
-    loose
-}
-
-/// Draws an edge to a corner.
-fn attach(meeting: &mut Meeting, loose: &Loose, edges: &mut [StraightEdge], creases: &mut [Crease]) {
-    match loose.edge {
-        LooseEdge::Straight(number) => {
-            let edge = &mut edges[number];
-            edge.ends[loose.end] = vec3::dot(vec3::sub(meeting.position, edge.origin), edge.direction);
-            meeting.ends.push((number, loose.end));
-            meeting.planes.extend(edge.planes);
-        }
-        LooseEdge::Crease(number) => {
-            let crease = &mut creases[number];
-            if loose.end == 0 {
-                crease.polyline.insert(0, meeting.position);
-            } else {
-                crease.polyline.push(meeting.position);
-            }
-            meeting.creases.push(number);
-            meeting.planes.extend(&crease.planes);
-        }
-    }
-}
-
-/// The position nearest to the lines of some ends by least squares, unless it is far from one of them.
-fn nearest_to_lines<'a>(ends: impl Iterator<Item = &'a Loose> + Clone, reach: f64) -> Option<Vec3> {
-    let (mut gram, mut right) = (Matrix3::zeros(), Vector3::zeros());
-    let mut mean = Vector3::zeros();
-    for end in ends.clone() {
-        let (p, d) = (Vector3::from(end.position), Vector3::from(end.direction));
-        let across = Matrix3::identity() - d * d.transpose();
-        gram += across;
-        right += across * p;
-        mean += p;
-    }
-    mean /= ends.clone().count() as f64;
-    let position: Vec3 = gram.lu().solve(&right).unwrap_or(mean).into();
-    ends.clone().all(|end| vec3::distance(end.position, position) <= reach).then_some(position)
 }

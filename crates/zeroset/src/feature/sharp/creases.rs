@@ -7,8 +7,8 @@
 //! foot of the point on that line lies on a crease. Such feet are thinned and joined along their directions.
 //!
 //! # Not guaranteed
-//! A rounding narrower than about four spacings is taken for a crease, and one that is wider is none. Where a crease turns sharply, or
-//! three of them meet, two flats do not suffice and a gap of some spacings stays.
+//! A rounding narrower than about four grains is taken for a crease, and one that is wider is none. Where a crease turns sharply, or
+//! three of them meet, two flats do not suffice and a gap of some grains stays.
 
 use rayon::prelude::*;
 
@@ -43,12 +43,23 @@ pub(in crate::feature) struct Crease {
     pub(in crate::feature) planes: Vec<u32>,
 }
 
+impl Crease {
+    /// Draws the first (0) or the last (1) end on to a position.
+    pub(super) fn draw_to(&mut self, end: usize, position: Vec3) {
+        let place = if end == 0 { 0 } else { self.polyline.len() };
+        self.polyline.insert(place, position);
+    }
+}
+
 /// What creases are looked for with.
 pub(in crate::feature) struct CreaseSearch<'a> {
     pub(in crate::feature) partition: &'a Partition<'a>,
     /// The least angle by which the surface turns.
     pub(in crate::feature) angle: f64,
-    pub(in crate::feature) spacing: f64,
+    /// The length at which the points tell directions.
+    pub(in crate::feature) grain: f64,
+    /// Points around a place that are looked at.
+    pub(in crate::feature) around: usize,
     pub(in crate::feature) noise: f64,
     /// Edges that are known already.
     pub(in crate::feature) known: &'a [[Vec3; 2]],
@@ -58,8 +69,6 @@ pub(in crate::feature) struct CreaseSearch<'a> {
 const BENT: f64 = 1.5;
 /// Neighbours that deviate by less than this are flat enough to tell a direction.
 const FLAT: f64 = 1.35;
-/// Points around a place.
-const AROUND: usize = 48;
 /// The fewest points of a side.
 const LEAST_SIDE: usize = 7;
 /// The largest deviation of the points of a side from its flat, over the noise.
@@ -68,17 +77,17 @@ const SIDE_NOISE: f64 = 1.5;
 const STRAYS: f64 = 0.15;
 /// The least share of a side's points on its own side of the crease.
 const PURE: f64 = 0.85;
-/// The farthest that a place lies from its foot, over the spacing.
+/// The farthest that a place lies from its foot, over the grain.
 const NEAR: f64 = 1.5;
-/// Feet within this distance of a known edge, over the spacing, belong to it.
+/// Feet within this distance of a known edge, over the grain, belong to it.
 const KNOWN: f64 = 2.5;
-/// Feet nearer than this, over the spacing, are one.
+/// Feet nearer than this, over the grain, are one.
 const THIN: f64 = 1.2;
-/// Feet farther apart than this, over the spacing, are not joined.
+/// Feet farther apart than this, over the grain, are not joined.
 const JOIN: f64 = 4.5;
 /// Cosine of the largest turn of a polyline from foot to foot.
 const BEND: f64 = 0.6;
-/// The shortest crease, over the spacing.
+/// The shortest crease, over the grain.
 const SHORTEST: f64 = 6.0;
 
 /// The creases, longest first.
@@ -97,7 +106,7 @@ pub(in crate::feature) fn creases(
         .par_iter()
         .map_init(Vec::new, |window, &i| search.foot(i as usize, window))
         .flatten_iter()
-        .filter(|foot| known.closest_within(foot.position, KNOWN * search.spacing).is_none())
+        .filter(|foot| known.closest_within(foot.position, KNOWN * search.grain).is_none())
         .collect();
     let feet = search.smoothed(&feet);
     let feet = search.thinned(feet);
@@ -105,7 +114,7 @@ pub(in crate::feature) fn creases(
         .chains(&feet)
         .into_iter()
         .map(|chain| search.crease(&feet, &chain, outward))
-        .filter(|crease| length(&crease.polyline) >= SHORTEST * search.spacing)
+        .filter(|crease| length(&crease.polyline) >= SHORTEST * search.grain)
         .collect();
     creases.sort_by(|a, b| {
         length(&b.polyline)
@@ -159,7 +168,7 @@ impl CreaseSearch<'_> {
         let (da, db, cos) = (a.distance(p), b.distance(p), vec3::dot(a.normal, b.normal));
         let (s, t) = ((cos * db - da) / (sine * sine), (cos * da - db) / (sine * sine));
         let position = vec3::add_scaled(vec3::add_scaled(p, a.normal, s), b.normal, t);
-        if vec3::distance(p, position) > NEAR * self.spacing {
+        if vec3::distance(p, position) > NEAR * self.grain {
             return None;
         }
         // From the crease into either side.
@@ -183,7 +192,7 @@ impl CreaseSearch<'_> {
         window.push(i as u32);
         window.extend_from_slice(around.of(i));
         let mut head = 1;
-        while window.len() < AROUND && head < window.len() {
+        while window.len() < self.around && head < window.len() {
             for &j in around.of(window[head] as usize) {
                 if !window.contains(&j) {
                     window.push(j);
@@ -278,7 +287,7 @@ impl CreaseSearch<'_> {
     /// Each foot moved, across its direction, to the mean of those around it with about its direction.
     fn smoothed(&self, feet: &[Foot]) -> Vec<Foot> {
         let tree = PointTree::new(&feet.iter().map(|f| f.position).collect::<Vec<_>>());
-        let reach = (2.0 * self.spacing).powi(2);
+        let reach = (2.0 * self.grain).powi(2);
         feet.par_iter()
             .map_init(Vec::new, |found, foot| {
                 tree.k_nearest(foot.position, 16, found);
@@ -313,7 +322,7 @@ impl CreaseSearch<'_> {
         feet.sort_by(|a, b| {
             b.angle.total_cmp(&a.angle).then_with(|| a.position.partial_cmp(&b.position).expect("finite"))
         });
-        let side = THIN * self.spacing;
+        let side = THIN * self.grain;
         let cell = |p: Vec3| p.map(|c| (c / side).floor() as i64);
         let mut cells: rustc_hash::FxHashMap<[i64; 3], Vec<usize>> = rustc_hash::FxHashMap::default();
         let mut kept: Vec<Foot> = Vec::new();
@@ -345,7 +354,7 @@ impl CreaseSearch<'_> {
                 let distance = near.distance_squared.sqrt();
                 let Some(step) = vec3::normalized(vec3::sub(feet[j].position, feet[i].position)) else { continue };
                 let cos = [i, j].map(|k| vec3::dot(feet[k].direction, step).abs());
-                if distance <= JOIN * self.spacing && cos[0].min(cos[1]) >= BEND {
+                if distance <= JOIN * self.grain && cos[0].min(cos[1]) >= BEND {
                     pairs.push((distance * (3.0 - cos[0] - cos[1]), i, j));
                 }
             }

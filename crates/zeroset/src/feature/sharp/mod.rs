@@ -2,11 +2,13 @@
 
 pub(in crate::feature) mod corners;
 mod creases;
+mod joints;
 pub(in crate::feature) mod straight;
 pub(in crate::feature) mod support;
 
-use self::corners::{Meeting, corners, join_creases};
+use self::corners::{Meeting, ON_PLANE, SNAP, corners};
 use self::creases::{Crease, CreaseSearch, creases};
+use self::joints::Joints;
 use self::straight::{EdgeLimits, StraightEdge, straight_edges};
 use self::support::Support;
 use crate::feature::params::FeatureError;
@@ -18,6 +20,9 @@ use crate::vec3::Vec3;
 
 /// How far data may lie from the line of an edge, over the spacing.
 const REACH: f64 = 2.5;
+
+/// Points around a place that show a crease, if the grain is the spacing.
+const AROUND: f64 = 48.0;
 
 /// The edges and where they meet. Straight edges are numbered first, then creases.
 pub(in crate::feature) struct Sharp {
@@ -33,11 +38,11 @@ impl Sharp {
     pub(in crate::feature) fn find(
         partition: &Partition<'_>,
         flats: &Flats,
-        fitted: &Fitted,
+        fitted: &Fitted<'_>,
         resolved: &Resolved,
         monitor: &dyn Monitor,
     ) -> Result<Self, FeatureError> {
-        let (spacing, noise, angle) = (resolved.spacing, resolved.noise, resolved.sharp_angle);
+        let (spacing, grain, noise, angle) = (resolved.spacing, resolved.grain, resolved.noise, resolved.sharp_angle);
         let (points, labels) = flats.bearing(partition.points, spacing);
         let support = Support::new(&points, &labels, REACH * spacing);
         let limits = EdgeLimits { angle, spacing, noise };
@@ -46,9 +51,18 @@ impl Sharp {
         let mut meetings = corners(&support, &flats.flats, &mut straight, spacing, noise);
         check(monitor)?;
         let known: Vec<[Vec3; 2]> = straight.iter().map(|edge| [edge.end(0), edge.end(1)]).collect();
-        let search = CreaseSearch { partition, angle, spacing, noise, known: &known };
+        let around = (AROUND * (grain / spacing).powi(2)).round() as usize;
+        let search = CreaseSearch { partition, angle, grain, around, noise, known: &known };
         let mut creases = creases(&search, &|p| fitted.outward(p));
-        join_creases(&mut meetings, &flats.flats, &mut straight, &mut creases, limits);
+        let joints = Joints {
+            flats: &flats.flats,
+            edges: &mut straight,
+            creases: &mut creases,
+            meetings: &mut meetings,
+            reach: SNAP * grain,
+            off: ON_PLANE * noise,
+        };
+        joints.join();
         check(monitor)?;
         Ok(Self { straight, creases, meetings })
     }

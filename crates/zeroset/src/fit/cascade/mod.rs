@@ -33,6 +33,7 @@ mod free;
 mod gradient;
 mod level;
 mod operator;
+mod polish;
 mod prior;
 mod prolong;
 mod samples;
@@ -45,3 +46,5 @@ mod tests;
 
 pub(crate) use coarse_to_fine::SHARE;
 pub use coarse_to_fine::{FitError, FitParams, FitReport, Iteration, LevelReport, Prepared, Scene, fit};
+pub(crate) use polish::{OrientedTriangle, polish};
+pub use polish::{PolishParams, PolishReport};

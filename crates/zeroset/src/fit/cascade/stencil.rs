@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use super::polish::Piece;
 use crate::domain::{Blocks, Cells, LatticePoints, NONE, TETRAHEDRA, barycentric, neighbor_code, tetrahedron_of};
 
 /// Coefficients of a row of eight nodes. Entry 0 is the node itself; entries 1..=7 are its neighbours at the non-empty subsets
@@ -51,6 +52,55 @@ impl Stencil {
             .map(|b| block_rows(&blocks.neighbors[b], data_block, points, cells, weights, shift, alpha))
             .unzip();
         Self { present, rows }
+    }
+
+    /// Adds the matrices of pieces, block by block, times `alpha`.
+    pub(super) fn add(&mut self, blocks: &Blocks, pieces: &[Vec<Piece>], alpha: f32) {
+        let added: Vec<Option<(u64, Box<[StencilRow]>)>> = (0..blocks.len())
+            .into_par_iter()
+            .with_min_len(16)
+            .map(|b| self.with_pieces(b, &blocks.neighbors[b], pieces, alpha))
+            .collect();
+        for (b, added) in added.into_iter().enumerate() {
+            if let Some((present, rows)) = added {
+                self.present[b] = present;
+                self.rows[b] = rows;
+            }
+        }
+    }
+
+    /// The rows of a block with the pieces that reach it; `None` if none does.
+    fn with_pieces(
+        &self,
+        b: usize,
+        neighbors: &[u32; 27],
+        pieces: &[Vec<Piece>],
+        alpha: f32,
+    ) -> Option<(u64, Box<[StencilRow]>)> {
+        let mut present = self.present[b];
+        let mut dense: Option<Box<[StencilRow; 64]>> = None;
+        for before in 0..8_usize {
+            let step: [i32; 3] = std::array::from_fn(|a| -(((before >> a) & 1) as i32));
+            let other = neighbors[neighbor_code(step)];
+            if other == NONE {
+                continue;
+            }
+            for piece in &pieces[other as usize] {
+                let place: [i32; 3] = std::array::from_fn(|a| i32::from(piece.local >> (3 * a) & 7) + 8 * step[a]);
+                if place.iter().any(|&c| c < -1) {
+                    continue;
+                }
+                let rows = dense.get_or_insert_with(|| {
+                    let mut dense = Box::new([[[0.0; 8]; 15]; 64]);
+                    let stored = (0..64).filter(|row| self.present[b] >> row & 1 == 1);
+                    stored.zip(&self.rows[b]).for_each(|(row, values)| dense[row] = *values);
+                    dense
+                });
+                present |= add_tetrahedron(rows, place, usize::from(piece.tetrahedron), &piece.moments, alpha);
+            }
+        }
+        let dense = dense?;
+        Some((present, (0..64).filter(|row| present >> row & 1 == 1).map(|row| dense[row]).collect()))
     }
 
     pub(super) fn bytes(&self) -> usize {

@@ -3,6 +3,8 @@
 mod compare;
 mod components;
 mod creases;
+mod intersections;
+mod simplify;
 mod topology;
 
 use crate::mesh::Mesh;

@@ -1,5 +1,8 @@
 //! The extraction on functions that are known, and on signs that no surface ever had.
 
+mod placement;
+mod tetrahedra;
+
 use super::contour;
 use crate::domain::{Blocks, Lattice, mask_get};
 use crate::field::LatticeField;
@@ -8,7 +11,7 @@ use crate::sample::Chance;
 use crate::vec3;
 
 /// F sampled at every node of the lattice with `cells` cells over the cube -1..1 and its padding.
-fn field_of(cells: f64, f: impl Fn([f64; 3]) -> f64) -> LatticeField {
+pub(in crate::contour) fn field_of(cells: f64, f: impl Fn([f64; 3]) -> f64) -> LatticeField {
     let lattice = Lattice::around([-1.0; 3], [1.0; 3], 2.0 / cells, 0.1).unwrap();
     let blocks = Blocks::dense(lattice.blocks_at(lattice.finest));
     let mut values = Vec::with_capacity(blocks.len() * 512);

@@ -1,0 +1,100 @@
+//! `zeroset simplify`.
+
+use std::path::Path;
+
+use serde::Serialize;
+use zeroset::mesh::{Mesh, SimplifyError, SimplifyParams, SimplifyReport, simplify};
+use zeroset_io::{MeshFormat, WriteOptions, read_mesh, shown, write_mesh};
+
+use crate::args::SimplifyArgs;
+use crate::console::Console;
+use crate::error::CliError;
+use crate::input::{check_outputs, refuse_mesh_stream};
+use crate::progress::Progress;
+use crate::report::{OutputReport, SCHEMA_VERSION, write_json};
+use crate::table::{count, position, significant};
+use crate::{interrupt, threads};
+
+pub(crate) fn run(args: &SimplifyArgs) -> Result<(), CliError> {
+    let console = if args.quiet { Console::Quiet } else { Console::Normal };
+    check(args)?;
+    threads::start(args.threads)?;
+    let mesh = interrupt::watched(|| read_mesh(&args.input))??;
+    // One of the two is always given.
+    let target = args.target.params().unwrap_or_default();
+    let params = SimplifyParams { sharp_angle: args.sharp_angle.to_radians(), ..target };
+    let progress = Progress::new(console);
+    let result = interrupt::watched(|| simplify(&mesh, &params, &progress))?;
+    progress.finish();
+    let (simplified, report) = result.map_err(|error| named(error, &args.input))?;
+    let output = write(args, &simplified)?;
+    console.say(&summary(&report, &output));
+    let Some(path) = &args.report else { return Ok(()) };
+    let (zeroset_version, input) = (env!("CARGO_PKG_VERSION"), shown(&args.input));
+    write_json(path, &Report { schema_version: SCHEMA_VERSION, zeroset_version, input, simplify: report, output })
+}
+
+/// The whole report.
+#[derive(Debug, Serialize)]
+struct Report {
+    schema_version: u32,
+    zeroset_version: &'static str,
+    input: String,
+    simplify: SimplifyReport,
+    output: OutputReport,
+}
+
+/// What can be told to be wrong before anything is read.
+fn check(args: &SimplifyArgs) -> Result<(), CliError> {
+    MeshFormat::from_path(&args.input)?;
+    refuse_mesh_stream(&args.output)?;
+    MeshFormat::from_path(&args.output)?;
+    let report = args.report.as_deref().map(|path| (path, "the report"));
+    let outputs: Vec<_> = [(args.output.as_path(), "the output")].into_iter().chain(report).collect();
+    check_outputs(std::slice::from_ref(&args.input), &outputs)
+}
+
+fn write(args: &SimplifyArgs, mesh: &Mesh) -> Result<OutputReport, CliError> {
+    let options = WriteOptions { resolution: args.target.max_error, ..WriteOptions::default() };
+    Ok(OutputReport::new(&args.output, write_mesh(&args.output, mesh, &options)?)?)
+}
+
+/// The error with the name of the file that it is about.
+fn named(error: SimplifyError, path: &Path) -> CliError {
+    let path = path.to_path_buf();
+    match error {
+        SimplifyError::NoSurface { faces } => CliError::NoSurface { path, faces },
+        SimplifyError::Broken(source) => CliError::Mesh { path, source },
+        SimplifyError::Cancelled(_) => CliError::Interrupted,
+        other @ (SimplifyError::NoTarget | SimplifyError::Parameter { .. }) => CliError::Usage(other.to_string()),
+    }
+}
+
+fn summary(report: &SimplifyReport, output: &OutputReport) -> String {
+    let mut text = format!(
+        "{}: {} vertices, {}, in {} s",
+        output.path,
+        count(report.vertices_after),
+        outcome(report),
+        significant(report.seconds, 3),
+    );
+    if let Some(offset) = output.local_offset.filter(|offset| *offset != [0.0; 3]) {
+        text += &format!("\nits coordinates are local: add {} for those of the input", position(offset, 0));
+    }
+    if !output.attributes_left_out.is_empty() {
+        text += &format!("\nthe format has no place for {}", output.attributes_left_out.join(", "));
+    }
+    text
+}
+
+/// What a simplification made of how much, and how far that is off.
+pub(crate) fn outcome(report: &SimplifyReport) -> String {
+    let [forth, back] = [report.deviation.original_to_simplified, report.deviation.simplified_to_original];
+    format!(
+        "{} triangles of {}, at most {} and on average {} off",
+        count(report.triangles_after),
+        count(report.triangles_before),
+        significant(report.deviation.max(), 3),
+        significant(0.5 * (forth.mean + back.mean), 3),
+    )
+}

@@ -1,0 +1,105 @@
+//! Sharp features: vertices on the planes, edges and corners of the surface, and mesh edges along its creases.
+//!
+//! # What
+//! F rounds edges off by up to a cell, and ripples on faces. This takes the extracted mesh and what is known of the surface, its
+//! planes and its points, and gives a mesh whose vertices lie on the surface's smooth parts, here called *sheets*, and whose edges run where
+//! two sheets meet.
+//!
+//! # How
+//! 1. Each vertex gets its sheet: the plane whose polygon is nearest, as far as F reaches; or, where the nearest points lie on no
+//!    plane, the curved part it is on. Neighbours agree on it by majority.
+//! 2. Near a crease a curved sheet is a quadric through the vertices of that side at which F is not rounded yet, carried on to the crease. Sides are
+//!    told apart by normals that were averaged along the surface, but not across creases.
+//! 3. A sheet that moves a vertex far must be borne out by the points there: if they follow F, the edge is round in truth, and
+//!    the vertex stays.
+//! 4. Vertices move to their sheets. A mesh edge between two sheets gets a vertex on the line where their tangent planes meet; a triangle
+//!    between three gets one where the three meet, and is cut accordingly. So every crease is a chain of mesh edges.
+//! 5. Vertices on curved parts settle until the triangles face the way of their sheets.
+//! 6. Triangles that were folded over or flattened on the way are mended by collapses and flips within one sheet.
+//!
+//! # Guaranteed
+//! The mesh stays a manifold with the same boundary, as triangles are only cut, and collapsed where that keeps a disc a disc. The same bits
+//! on any number of threads.
+//!
+//! # Not guaranteed
+//! That no triangle is left folded: [`SharpReport::folded`] counts them. That triangles of different parts of the surface, nearer to
+//! each other than a cell, do not cut through each other. Edges rounder than a third of a cell are made sharp.
+//!
+//! # Cost
+//! Linear in the vertices, with a logarithm for the nearest points and polygons.
+//!
+//! # Source
+//! Ours. Placing a vertex where tangent planes meet: Kobbelt et al. 2001; there, too, an edge is recognised by normals alone.
+
+mod curved;
+mod evidence;
+mod insert;
+mod settle;
+mod sheets;
+mod stars;
+mod tidy;
+
+#[cfg(test)]
+mod tests;
+
+use serde::Serialize;
+
+use crate::feature::{Facets, Flat};
+use crate::mesh::Mesh;
+use crate::spatial::PointTree;
+use crate::vec3::Vec3;
+
+/// What the surface is known to be.
+pub(crate) struct Known<'a> {
+    /// Its planes.
+    pub(crate) facets: &'a Facets,
+    /// The points.
+    pub(crate) positions: &'a [Vec3],
+    /// The same as a tree.
+    pub(crate) points: &'a PointTree,
+    /// The plane of each point.
+    pub(crate) plane_of: &'a [Option<u32>],
+    /// Whether curved parts may have creases; if not, they stay as F has them.
+    pub(crate) curved_creases: bool,
+    /// Spacing of the lattice that the mesh was made on.
+    pub(crate) cell: f64,
+}
+
+/// What was made sharp.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Default)]
+pub struct SharpReport {
+    /// Vertices put on planes.
+    pub on_planes: usize,
+    /// Vertices put in along creases.
+    pub on_creases: usize,
+    /// Vertices put in at corners.
+    pub at_corners: usize,
+    /// Triangles that stay folded or flat.
+    pub folded: usize,
+}
+
+/// How a vertex may move.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Seat {
+    /// It stays where F put it.
+    Loose,
+    /// Within a plane.
+    On(Flat),
+    /// Along a line: a position and a unit direction.
+    Along(Vec3, Vec3),
+    /// Not at all.
+    At,
+}
+
+/// Makes a mesh sharp.
+pub(crate) fn sharpen(mesh: &mut Mesh, known: &Known) -> SharpReport {
+    let sheets = sheets::sheets(mesh, known);
+    let on_planes = sheets.iter().filter(|sheet| sheet.plane.is_some()).count();
+    let mut report = SharpReport { on_planes, ..SharpReport::default() };
+    let inserted = insert::insert_creases(mesh, &sheets, known.cell);
+    report.on_creases = inserted.seats.iter().filter(|s| matches!(s, Seat::Along(..))).count();
+    report.at_corners = inserted.seats.iter().filter(|s| matches!(s, Seat::At)).count();
+    settle::settle(mesh, &inserted);
+    report.folded = tidy::tidy(mesh, inserted, known.cell);
+    report
+}

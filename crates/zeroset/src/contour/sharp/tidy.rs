@@ -1,0 +1,273 @@
+//! Mends the triangles that were folded over or flattened when vertices moved to their sheets.
+//!
+//! A triangle's quality is its area, negative where it faces away from its sheet, over that of the equilateral triangle with the same sum of
+//! squared sides. Around each bad triangle an edge is collapsed or flipped or a vertex is moved within its seat, if that makes the
+//! worst triangle there better.
+
+use super::Seat;
+use super::insert::Inserted;
+use crate::mesh::Mesh;
+use crate::vec3::{self, Vec3};
+
+/// Triangles below this quality are mended.
+const BAD: f64 = 0.08;
+/// Passes over the bad triangles.
+const PASSES: usize = 8;
+/// A vertex this close to a plane or a line lies on it, in cells.
+const ON: f64 = 1e-3;
+/// Sheets that differ by less have no crease between them: the cosine of 15 degrees.
+const FLAT: f64 = 0.966;
+
+/// Mends bad triangles; the number of those left.
+pub(super) fn tidy(mesh: &mut Mesh, inserted: Inserted, cell: f64) -> usize {
+    let mut patchwork = Patchwork::new(std::mem::take(mesh), inserted, cell);
+    let mut bad: Vec<u32> = (0..patchwork.triangles.len() as u32).filter(|&t| patchwork.is_bad(t)).collect();
+    for _ in 0..PASSES {
+        let mut touched = Vec::new();
+        for &t in &bad {
+            if patchwork.is_bad(t) {
+                patchwork.mend(t, &mut touched);
+            }
+        }
+        bad.extend(touched);
+        bad.sort_unstable();
+        bad.dedup();
+        bad.retain(|&t| patchwork.is_bad(t));
+        if bad.is_empty() {
+            break;
+        }
+    }
+    *mesh = patchwork.finish();
+    bad.len()
+}
+
+/// A mesh whose triangles can be changed.
+struct Patchwork {
+    vertices: Vec<Vec3>,
+    seats: Vec<Seat>,
+    /// Dead triangles are `None`.
+    triangles: Vec<Option<[u32; 3]>>,
+    /// The normal of each triangle's sheet.
+    facing: Vec<Vec3>,
+    /// The triangles around each vertex.
+    stars: Vec<Vec<u32>>,
+    cell: f64,
+    rest: Mesh,
+}
+
+impl Patchwork {
+    fn new(mut mesh: Mesh, inserted: Inserted, cell: f64) -> Self {
+        let mut stars: Vec<Vec<u32>> = vec![Vec::new(); mesh.vertices.len()];
+        for (t, corners) in mesh.triangles.iter().enumerate() {
+            corners.iter().for_each(|&v| stars[v as usize].push(t as u32));
+        }
+        Self {
+            vertices: std::mem::take(&mut mesh.vertices),
+            seats: inserted.seats,
+            triangles: std::mem::take(&mut mesh.triangles).into_iter().map(Some).collect(),
+            facing: inserted.facing,
+            stars,
+            cell,
+            rest: mesh,
+        }
+    }
+
+    fn finish(self) -> Mesh {
+        let mut mesh = self.rest;
+        mesh.vertices = self.vertices;
+        mesh.triangles = self.triangles.into_iter().flatten().collect();
+        super::super::clip::drop_unused(&mut mesh);
+        mesh
+    }
+
+    fn quality_of(&self, corners: [u32; 3], facing: Vec3) -> f64 {
+        quality(corners.map(|v| self.vertices[v as usize]), facing)
+    }
+
+    fn quality(&self, t: u32) -> f64 {
+        let t = t as usize;
+        self.triangles[t].map_or(1.0, |corners| self.quality_of(corners, self.facing[t]))
+    }
+
+    fn is_bad(&self, t: u32) -> bool {
+        self.quality(t) < BAD
+    }
+
+    /// Tries every change around a bad triangle until one helps.
+    fn mend(&mut self, t: u32, touched: &mut Vec<u32>) {
+        let Some(corners) = self.triangles[t as usize] else { return };
+        let mut sides: Vec<(f64, [u32; 2])> = (0..3)
+            .map(|i| {
+                let ends = [corners[i], corners[(i + 1) % 3]];
+                (vec3::distance(self.vertices[ends[0] as usize], self.vertices[ends[1] as usize]), ends)
+            })
+            .collect();
+        sides.sort_by(|a, b| a.0.total_cmp(&b.0));
+        for &(_, [a, b]) in &sides {
+            if self.collapse(a, b, touched) || self.collapse(b, a, touched) {
+                return;
+            }
+        }
+        for &(_, [a, b]) in sides.iter().rev() {
+            if self.flip(a, b, touched) {
+                return;
+            }
+        }
+        for v in corners {
+            if self.relax(v, touched) {
+                return;
+            }
+        }
+    }
+
+    /// The triangles at the edge from a to b.
+    fn at_edge(&self, a: u32, b: u32) -> Vec<u32> {
+        let has = |t: &u32| self.triangles[*t as usize].is_some_and(|corners| corners.contains(&b));
+        self.stars[a as usize].iter().copied().filter(has).collect()
+    }
+
+    fn around(&self, v: u32) -> Vec<u32> {
+        let corners = self.stars[v as usize].iter().filter_map(|&t| self.triangles[t as usize]);
+        let mut around: Vec<u32> = corners.flatten().filter(|&u| u != v).collect();
+        around.sort_unstable();
+        around.dedup();
+        around
+    }
+
+    /// Whether a vertex may give up its place for that of another.
+    fn may_go_to(&self, from: u32, to: u32) -> bool {
+        let p = self.vertices[to as usize];
+        let near = ON * self.cell;
+        match self.seats[from as usize] {
+            Seat::At => false,
+            Seat::Along(origin, direction) => {
+                matches!(self.seats[to as usize], Seat::Along(..) | Seat::At)
+                    && vec3::norm(vec3::cross(vec3::sub(p, origin), direction)) < near
+            }
+            Seat::On(flat) => flat.distance(p).abs() < near,
+            Seat::Loose => true,
+        }
+    }
+
+    fn is_rim(&self, v: u32) -> bool {
+        let star = &self.stars[v as usize];
+        self.around(v).len() != star.len()
+    }
+
+    /// Moves `from` to `to`, where the two become one.
+    fn collapse(&mut self, from: u32, to: u32, touched: &mut Vec<u32>) -> bool {
+        if !self.may_go_to(from, to) || self.is_rim(from) {
+            return false;
+        }
+        let gone = self.at_edge(from, to);
+        let (mine, others) = (self.around(from), self.around(to));
+        let common = mine.iter().filter(|v| others.binary_search(v).is_ok()).count();
+        if gone.len() != 2 || common != 2 || mine.len() < 4 {
+            return false;
+        }
+        let star = self.stars[from as usize].clone();
+        let before = star.iter().map(|&t| self.quality(t)).fold(1.0, f64::min);
+        let moved = |corners: [u32; 3]| corners.map(|v| if v == from { to } else { v });
+        let kept: Vec<u32> = star.iter().copied().filter(|t| !gone.contains(t)).collect();
+        let after = kept
+            .iter()
+            .filter_map(|&t| Some(self.quality_of(moved(self.triangles[t as usize]?), self.facing[t as usize])))
+            .fold(1.0, f64::min);
+        if after <= before {
+            return false;
+        }
+        for &t in &gone {
+            if let Some(corners) = self.triangles[t as usize].take() {
+                corners.iter().for_each(|&v| self.stars[v as usize].retain(|&u| u != t));
+            }
+        }
+        for &t in &kept {
+            self.triangles[t as usize] = self.triangles[t as usize].map(moved);
+            self.stars[to as usize].push(t);
+        }
+        self.stars[from as usize].clear();
+        touched.extend(kept);
+        true
+    }
+
+    /// Turns the edge between two triangles of one sheet.
+    fn flip(&mut self, a: u32, b: u32, touched: &mut Vec<u32>) -> bool {
+        let pair = self.at_edge(a, b);
+        let &[s, t] = pair.as_slice() else { return false };
+        if vec3::dot(self.facing[s as usize], self.facing[t as usize]) < FLAT {
+            return false;
+        }
+        let (Some(first), Some(second)) = (self.triangles[s as usize], self.triangles[t as usize]) else {
+            return false;
+        };
+        // Make a -> b the direction in which the first triangle runs along the edge.
+        let runs =
+            |corners: [u32; 3], from: u32, to: u32| (0..3).any(|i| corners[i] == from && corners[(i + 1) % 3] == to);
+        let (a, b) = if runs(first, a, b) { (a, b) } else { (b, a) };
+        let apex = |corners: [u32; 3]| corners.into_iter().find(|&v| v != a && v != b);
+        let (Some(c), Some(d)) = (apex(first), apex(second)) else { return false };
+        if c == d || !runs(second, b, a) || !self.at_edge(c, d).is_empty() {
+            return false;
+        }
+        let before = self.quality(s).min(self.quality(t));
+        let new = [[c, a, d], [d, b, c]];
+        let after =
+            self.quality_of(new[0], self.facing[s as usize]).min(self.quality_of(new[1], self.facing[t as usize]));
+        if after <= before {
+            return false;
+        }
+        for (&t, corners) in pair.iter().zip(new) {
+            self.triangles[t as usize] = Some(corners);
+        }
+        self.stars[a as usize].retain(|&u| u != t);
+        self.stars[b as usize].retain(|&u| u != s);
+        self.stars[c as usize].push(t);
+        self.stars[d as usize].push(s);
+        touched.extend(pair);
+        true
+    }
+
+    /// Moves a vertex towards the middle of its neighbours, as far as its seat lets it.
+    fn relax(&mut self, v: u32, touched: &mut Vec<u32>) -> bool {
+        if self.is_rim(v) {
+            return false;
+        }
+        let p = self.vertices[v as usize];
+        let around = self.around(v);
+        let mean = |of: &[u32]| {
+            let sum = of.iter().fold([0.0; 3], |sum, &u| vec3::add(sum, self.vertices[u as usize]));
+            vec3::scale(sum, 1.0 / of.len() as f64)
+        };
+        let target = match self.seats[v as usize] {
+            Seat::At => return false,
+            Seat::Along(origin, direction) => {
+                let middle = mean(&around);
+                vec3::add_scaled(origin, direction, vec3::dot(vec3::sub(middle, origin), direction))
+            }
+            Seat::On(flat) => flat.foot(mean(&around)),
+            Seat::Loose => mean(&around),
+        };
+        let star = self.stars[v as usize].clone();
+        let worst = |this: &Self| star.iter().map(|&t| this.quality(t)).fold(1.0, f64::min);
+        let before = worst(self);
+        for step in [1.0, 0.5, 0.25] {
+            self.vertices[v as usize] = vec3::lerp(p, target, step);
+            if worst(self) > before {
+                touched.extend(star);
+                return true;
+            }
+        }
+        self.vertices[v as usize] = p;
+        false
+    }
+}
+
+/// Twice the root of three times the area over the sum of squared sides... signed by the direction it should face.
+fn quality([a, b, c]: [Vec3; 3], facing: Vec3) -> f64 {
+    let (u, v, w) = (vec3::sub(b, a), vec3::sub(c, a), vec3::sub(c, b));
+    let sides = vec3::norm_squared(u) + vec3::norm_squared(v) + vec3::norm_squared(w);
+    if sides == 0.0 {
+        return -1.0;
+    }
+    2.0 * 3.0_f64.sqrt() * vec3::dot(vec3::cross(u, v), facing) / sides
+}

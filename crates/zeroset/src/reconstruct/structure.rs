@@ -1,0 +1,100 @@
+//! What the points show the surface to be made of: planes, and the rest.
+
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::{Frame, PlanReport, ReconstructError};
+use crate::cloud::Cloud;
+use crate::contour::{Known, SharpReport, sharpen};
+use crate::feature::{Facets, FeatureError, FeatureParams, detect_with};
+use crate::field::LatticeField;
+use crate::fit::cascade::{OrientedTriangle, PolishParams, PolishReport, Scene, polish};
+use crate::mesh::Mesh;
+use crate::monitor::{Cancelled, Monitor};
+use crate::spatial::PointTree;
+use crate::vec3::Vec3;
+
+/// The planes of a surface, and which points lie on them.
+pub(super) struct Structure {
+    facets: Facets,
+    /// The plane of each point.
+    plane_of: Vec<Option<u32>>,
+    /// In terrain what is curved is ground and vegetation, whose creases are noise.
+    curved_creases: bool,
+    pub(super) report: StructureReport,
+}
+
+/// What was found before the surface was made sharp.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct StructureReport {
+    /// Planes.
+    pub planes: usize,
+    /// Points on them.
+    pub points_on_planes: usize,
+    /// Root of the mean square distance of these points from their planes; `None` without any.
+    pub plane_rms: Option<f64>,
+}
+
+impl Structure {
+    /// Finds planes with the fit that is there.
+    pub(super) fn find(
+        cloud: &Cloud,
+        plan: &PlanReport,
+        field: &LatticeField,
+        monitor: &dyn Monitor,
+    ) -> Result<Self, ReconstructError> {
+        let params = FeatureParams { scene: Some(plan.scene), up: plan.up, ..FeatureParams::default() };
+        let (features, found) = match detect_with(cloud, (plan, field), &params, monitor) {
+            Ok(found) => found,
+            Err(FeatureError::Cancelled(cancelled)) => return Err(cancelled.into()),
+            Err(FeatureError::Surface(error)) => return Err(error),
+            Err(FeatureError::Parameter { .. }) => unreachable!("the usual parameters are possible"),
+        };
+        let report = StructureReport {
+            planes: features.planes.len(),
+            points_on_planes: found.points_on_planes,
+            plane_rms: found.plane_rms,
+        };
+        let plane_of = features.points.iter().map(|point| point.plane).collect();
+        let curved_creases = matches!(plan.scene, Scene::Object | Scene::Free);
+        Ok(Self { facets: Facets::new(&features), plane_of, curved_creases, report })
+    }
+
+    /// Polishes F: points on planes give way to their planes.
+    pub(super) fn polish(
+        &self,
+        field: &LatticeField,
+        cloud: &Cloud,
+        frame: Frame,
+        params: PolishParams,
+        monitor: &dyn Monitor,
+    ) -> Result<(LatticeField, PolishReport), Cancelled> {
+        let loose: Vec<Vec3> = cloud
+            .points
+            .par_iter()
+            .zip(&self.plane_of)
+            .filter(|(_, plane)| plane.is_none())
+            .map(|(&p, _)| frame.enter(p))
+            .collect();
+        let turned = |(corners, normal): ([Vec3; 3], Vec3)| OrientedTriangle {
+            corners: corners.map(|corner| frame.enter(corner)),
+            normal: frame.enter(normal),
+        };
+        let facets: Vec<OrientedTriangle> = self.facets.oriented_triangles().map(turned).collect();
+        polish(field, &loose, &facets, params, monitor)
+    }
+
+    /// Makes a mesh in the coordinates of the cloud sharp.
+    pub(super) fn sharpen(&self, mesh: &mut Mesh, cloud: &Cloud, cell: f64) -> SharpReport {
+        let points = PointTree::new(&cloud.points);
+        let known = Known {
+            facets: &self.facets,
+            positions: &cloud.points,
+            points: &points,
+            plane_of: &self.plane_of,
+            curved_creases: self.curved_creases,
+            cell,
+        };
+        sharpen(mesh, &known)
+    }
+}
