@@ -123,7 +123,7 @@ impl Plan<'_> {
         let start = Instant::now();
         let sharp = structure.as_ref().map(|structure| {
             monitor.stage("making edges sharp");
-            structure.sharpen(&mut mesh, cloud, plan.resolution)
+            structure.sharpen(&mut mesh, cloud, &plan)
         });
         check(monitor)?;
         monitor.share(AFTER_CONTOUR);

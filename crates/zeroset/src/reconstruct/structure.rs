@@ -85,7 +85,7 @@ impl Structure {
     }
 
     /// Makes a mesh in the coordinates of the cloud sharp.
-    pub(super) fn sharpen(&self, mesh: &mut Mesh, cloud: &Cloud, cell: f64) -> SharpReport {
+    pub(super) fn sharpen(&self, mesh: &mut Mesh, cloud: &Cloud, plan: &PlanReport) -> SharpReport {
         let points = PointTree::new(&cloud.points);
         let known = Known {
             facets: &self.facets,
@@ -93,7 +93,8 @@ impl Structure {
             points: &points,
             plane_of: &self.plane_of,
             curved_creases: self.curved_creases,
-            cell,
+            noise: plan.noise,
+            cell: plan.resolution,
         };
         sharpen(mesh, &known)
     }

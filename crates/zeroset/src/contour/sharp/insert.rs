@@ -1,9 +1,12 @@
 //! New vertices where sheets meet: on the mesh edges that cross a crease, and in the triangles that hold a corner.
 
+use rayon::prelude::*;
+
 use super::Seat;
-use super::sheets::Sheet;
+use super::creases::{Crossing, crossings};
+use super::sheets::Sheets;
 use crate::feature::Flat;
-use crate::mesh::{Edges, Mesh};
+use crate::mesh::Mesh;
 use crate::vec3::{self, Vec3};
 
 /// Sheets meet in a crease from this angle on; its sine.
@@ -11,75 +14,78 @@ const LEAST_SINE: f64 = 0.12;
 /// How far from its edge a vertex may come to lie, in cells.
 const REACH: f64 = 1.8;
 
-/// A mesh with its creases: the seat of each vertex, and the normal of the sheet of each triangle.
+/// A mesh with its creases.
 pub(super) struct Inserted {
+    /// How each vertex may move.
     pub(super) seats: Vec<Seat>,
-    pub(super) facing: Vec<Vec3>,
+    /// The normal of the sheet of each triangle.
+    pub(super) facing: Vec<[f32; 3]>,
+    /// Where each vertex is on the surface of F.
+    pub(super) origins: Vec<Vec3>,
 }
 
 /// Puts vertices on their sheets and makes mesh edges along the creases.
-pub(super) fn insert_creases(mesh: &mut Mesh, sheets: &[Sheet], cell: f64) -> Inserted {
-    let mut seats: Vec<Seat> =
-        sheets.iter().map(|sheet| if sheet.plane.is_some() { Seat::On(sheet.flat) } else { Seat::Loose }).collect();
-    let mut vertices: Vec<Vec3> = sheets.iter().map(|sheet| sheet.position).collect();
-    let mut inserted: Vec<Option<u32>> = vec![None; 3 * mesh.triangles.len()];
-    let edges = Edges::new(mesh).expect("a mesh of our own is sound");
-    for edge in edges.iter() {
-        let ends = [edge.low, edge.high].map(|v| v as usize);
-        if !sheets[ends[0]].meets(&sheets[ends[1]]) {
-            continue;
-        }
-        let Some((position, direction)) = crossing(ends.map(|v| mesh.vertices[v]), ends.map(|v| sheets[v].flat), cell)
-        else {
+pub(super) fn insert_creases(mesh: &mut Mesh, sheets: &Sheets, cell: f64) -> Inserted {
+    let count = mesh.vertices.len() as u32;
+    let seat = |v: u32| {
+        let sheet = sheets.of(v);
+        if sheet.plane.is_some() { Seat::On(sheet.flat) } else { Seat::Loose }
+    };
+    let mut seats: Vec<Seat> = (0..count).into_par_iter().map(seat).collect();
+    let foot = |v: u32| sheets.of(v).flat.foot(mesh.vertices[v as usize]);
+    let mut vertices: Vec<Vec3> = (0..count).into_par_iter().map(foot).collect();
+    let mut origins = std::mem::take(&mut mesh.vertices);
+    // The new vertex of each side of a triangle that crosses a crease.
+    let mut cuts: Vec<(u32, u32)> = Vec::new();
+    for Crossing { ends, sides } in crossings(mesh, sheets) {
+        let flats = ends.map(|v| sheets.of(v).flat);
+        let Some((share, position, direction)) = crossing(ends.map(|v| origins[v as usize]), flats, cell) else {
             continue;
         };
         let number = vertices.len() as u32;
         vertices.push(position);
+        origins.push(vec3::lerp(origins[ends[0] as usize], origins[ends[1] as usize], share));
         seats.push(Seat::Along(position, direction));
-        edge.corners().for_each(|corner| inserted[corner as usize] = Some(number));
+        cuts.extend([(sides[0], number), (sides[1], number)]);
     }
+    cuts.par_sort_unstable();
+    cuts.dedup();
+    let mut cuts = cuts.into_iter().peekable();
     let mut triangles = Vec::with_capacity(mesh.triangles.len());
-    let mut facing: Vec<Vec3> = Vec::with_capacity(mesh.triangles.len());
-    let normal_of = |v: u32| sheets[v as usize].flat.normal;
+    let mut facing: Vec<[f32; 3]> = Vec::with_capacity(mesh.triangles.len());
+    let normal_of = |v: u32| sheets.of(v).flat.normal;
     for (t, corners) in mesh.triangles.iter().enumerate() {
-        let cut: [Option<u32>; 3] = std::array::from_fn(|side| inserted[3 * t + side]);
+        let mut cut = [None; 3];
+        while let Some((side, number)) = cuts.next_if(|(side, _)| *side as usize / 3 == t) {
+            cut[side as usize % 3] = Some(number);
+        }
+        let mut emit = |t: [u32; 3], v: u32| {
+            triangles.push(t);
+            facing.push(normal_of(v).map(|c| c as f32));
+        };
         match cut.iter().flatten().count() {
             0 => {
                 triangles.push(*corners);
                 let sum = corners.iter().fold([0.0; 3], |sum, &v| vec3::add(sum, normal_of(v)));
-                facing.push(vec3::normalized(sum).unwrap_or(normal_of(corners[0])));
+                facing.push(vec3::normalized(sum).unwrap_or(normal_of(corners[0])).map(|c| c as f32));
             }
-            1 => split_in_two(*corners, cut, |t, v| {
-                triangles.push(t);
-                facing.push(normal_of(v));
-            }),
-            2 => split_in_three(*corners, cut, &vertices, sheets, |t, v| {
-                triangles.push(t);
-                facing.push(normal_of(v));
-            }),
+            1 => split_in_two(*corners, cut, emit),
+            2 => split_in_three(*corners, cut, &vertices, sheets, emit),
             _ => {
-                let flats = corners.map(|v| sheets[v as usize].flat);
-                let middle = vec3::scale(
-                    corners.iter().fold([0.0; 3], |sum, &v| vec3::add(sum, mesh.vertices[v as usize])),
-                    1.0 / 3.0,
-                );
+                let mean = |of: [Vec3; 3]| vec3::scale(vec3::add(of[0], vec3::add(of[1], of[2])), 1.0 / 3.0);
+                let origin = mean(corners.map(|v| origins[v as usize]));
                 let centre = vertices.len() as u32;
-                match corner(flats, middle, cell) {
-                    Some(position) => {
-                        vertices.push(position);
-                        seats.push(Seat::At);
-                    }
-                    None => {
-                        let sum = cut.iter().flatten().fold([0.0; 3], |s, &v| vec3::add(s, vertices[v as usize]));
-                        vertices.push(vec3::scale(sum, 1.0 / 3.0));
-                        seats.push(Seat::Loose);
-                    }
-                }
+                let (position, seat) = match corner(corners.map(|v| sheets.of(v).flat), origin, cell) {
+                    Some(position) => (position, Seat::At),
+                    None => (mean(cut.map(|v| v.map_or(origin, |v| vertices[v as usize]))), Seat::Loose),
+                };
+                vertices.push(position);
+                origins.push(origin);
+                seats.push(seat);
                 for side in 0..3 {
                     if let (Some(before), Some(after)) = (cut[(side + 2) % 3], cut[side]) {
-                        triangles.push([before, corners[side], centre]);
-                        triangles.push([corners[side], after, centre]);
-                        facing.extend([normal_of(corners[side]); 2]);
+                        emit([before, corners[side], centre], corners[side]);
+                        emit([corners[side], after, centre], corners[side]);
                     }
                 }
             }
@@ -87,11 +93,11 @@ pub(super) fn insert_creases(mesh: &mut Mesh, sheets: &[Sheet], cell: f64) -> In
     }
     mesh.vertices = vertices;
     mesh.triangles = triangles;
-    Inserted { seats, facing }
+    Inserted { seats, facing, origins }
 }
 
-/// Where a mesh edge meets the line of two sheets, and the line's direction.
-fn crossing(ends: [Vec3; 2], flats: [Flat; 2], cell: f64) -> Option<(Vec3, Vec3)> {
+/// Where a mesh edge meets the line of two sheets: the share of the edge before it, the position, and the line's direction.
+fn crossing(ends: [Vec3; 2], flats: [Flat; 2], cell: f64) -> Option<(f64, Vec3, Vec3)> {
     let across = vec3::cross(flats[0].normal, flats[1].normal);
     let sine = vec3::norm(across);
     if sine < LEAST_SINE {
@@ -102,7 +108,7 @@ fn crossing(ends: [Vec3; 2], flats: [Flat; 2], cell: f64) -> Option<(Vec3, Vec3)
     let t = if excess[0] < 0.0 && excess[1] > 0.0 { excess[0] / (excess[0] - excess[1]) } else { 0.5 };
     let middle = vec3::lerp(ends[0], ends[1], t);
     let position = meet(&flats, middle, 0.01);
-    (vec3::distance(position, middle) < REACH * cell).then(|| (position, vec3::scale(across, 1.0 / sine)))
+    (vec3::distance(position, middle) < REACH * cell).then(|| (t, position, vec3::scale(across, 1.0 / sine)))
 }
 
 /// The position nearest to `from` that lies on all planes, as far as they differ enough for their common normals to count.
@@ -148,7 +154,7 @@ fn split_in_three(
     corners: [u32; 3],
     cut: [Option<u32>; 3],
     vertices: &[Vec3],
-    sheets: &[Sheet],
+    sheets: &Sheets,
     mut emit: impl FnMut([u32; 3], u32),
 ) {
     for side in 0..3 {
@@ -156,7 +162,7 @@ fn split_in_three(
         let (Some(before), Some(after)) = (cut[(side + 2) % 3], cut[side]) else { continue };
         let [a, b, c] = [corners[side], corners[(side + 1) % 3], corners[(side + 2) % 3]];
         emit([before, a, after], a);
-        let normal = sheets[b as usize].flat.normal;
+        let normal = sheets.of(b).flat.normal;
         let quadrangle = [before, after, b, c].map(|v| vertices[v as usize]);
         super::super::triangulate::triangulate(&quadrangle, normal, |t| {
             emit(t.map(|i| [before, after, b, c][i]), b);

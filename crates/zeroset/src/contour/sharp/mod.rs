@@ -9,21 +9,23 @@
 //! 1. Each vertex gets its sheet: the plane whose polygon is nearest, as far as F reaches; or, where the nearest points lie on no
 //!    plane, the curved part it is on. Neighbours agree on it by majority.
 //! 2. Near a crease a curved sheet is a quadric through the vertices of that side at which F is not rounded yet, carried on to the crease. Sides are
-//!    told apart by normals that were averaged along the surface, but not across creases.
-//! 3. A sheet that moves a vertex far must be borne out by the points there: if they follow F, the edge is round in truth, and
-//!    the vertex stays.
+//!    told apart by normals that were averaged along the surface, but not across creases. F overshoots beside an edge, by up to a
+//!    tenth of a cell; so the quadric is moved to the mean of its points.
+//! 3. A crease must be borne out by its points: if along a stretch of it they lie where F is rather than where the sheets are, it is round in
+//!    truth, and its vertices stay where F has them. One decision for a stretch, so creases are not nibbled at.
 //! 4. Vertices move to their sheets. A mesh edge between two sheets gets a vertex on the line where their tangent planes meet; a triangle
 //!    between three gets one where the three meet, and is cut accordingly. So every crease is a chain of mesh edges.
 //! 5. Vertices on curved parts settle until the triangles face the way of their sheets.
 //! 6. Triangles that were folded over or flattened on the way are mended by collapses and flips within one sheet.
+//! 7. Where triangles still cut through each other, their vertices go back towards their places on the surface of F.
 //!
 //! # Guaranteed
 //! The mesh stays a manifold with the same boundary, as triangles are only cut, and collapsed where that keeps a disc a disc. The same bits
 //! on any number of threads.
 //!
 //! # Not guaranteed
-//! That no triangle is left folded: [`SharpReport::folded`] counts them. That triangles of different parts of the surface, nearer to
-//! each other than a cell, do not cut through each other. Edges rounder than a third of a cell are made sharp.
+//! That no two triangles cut through each other: [`SharpReport::intersections`] counts pairs that are left near creases. Edges
+//! rounder than about half a cell are made sharp.
 //!
 //! # Cost
 //! Linear in the vertices, with a logarithm for the nearest points and polygons.
@@ -31,7 +33,9 @@
 //! # Source
 //! Ours. Placing a vertex where tangent planes meet: Kobbelt et al. 2001; there, too, an edge is recognised by normals alone.
 
+mod creases;
 mod curved;
+mod embed;
 mod evidence;
 mod insert;
 mod settle;
@@ -48,6 +52,7 @@ use crate::feature::{Facets, Flat};
 use crate::mesh::Mesh;
 use crate::spatial::PointTree;
 use crate::vec3::Vec3;
+use stars::{Fans, Stars};
 
 /// What the surface is known to be.
 pub(crate) struct Known<'a> {
@@ -61,6 +66,8 @@ pub(crate) struct Known<'a> {
     pub(crate) plane_of: &'a [Option<u32>],
     /// Whether curved parts may have creases; if not, they stay as F has them.
     pub(crate) curved_creases: bool,
+    /// Standard deviation of the noise of the points.
+    pub(crate) noise: f64,
     /// Spacing of the lattice that the mesh was made on.
     pub(crate) cell: f64,
 }
@@ -74,8 +81,12 @@ pub struct SharpReport {
     pub on_creases: usize,
     /// Vertices put in at corners.
     pub at_corners: usize,
-    /// Triangles that stay folded or flat.
+    /// Triangles that were still folded or flat before vertices were taken back.
     pub folded: usize,
+    /// Vertices taken back towards F, as triangles there cut through others.
+    pub taken_back: usize,
+    /// Pairs of triangles near creases that still cut through each other.
+    pub intersections: u64,
 }
 
 /// How a vertex may move.
@@ -93,13 +104,19 @@ pub(super) enum Seat {
 
 /// Makes a mesh sharp.
 pub(crate) fn sharpen(mesh: &mut Mesh, known: &Known) -> SharpReport {
-    let sheets = sheets::sheets(mesh, known);
-    let on_planes = sheets.iter().filter(|sheet| sheet.plane.is_some()).count();
-    let mut report = SharpReport { on_planes, ..SharpReport::default() };
-    let inserted = insert::insert_creases(mesh, &sheets, known.cell);
-    report.on_creases = inserted.seats.iter().filter(|s| matches!(s, Seat::Along(..))).count();
-    report.at_corners = inserted.seats.iter().filter(|s| matches!(s, Seat::At)).count();
-    settle::settle(mesh, &inserted);
-    report.folded = tidy::tidy(mesh, inserted, known.cell);
-    report
+    let stars = Stars::new(mesh);
+    let sheets = sheets::sheets(mesh, &stars, known);
+    drop(stars);
+    let on_planes = (0..mesh.vertices.len() as u32).filter(|&v| sheets.of(v).plane.is_some()).count();
+    let first = mesh.vertices.len();
+    let mut inserted = insert::insert_creases(mesh, &sheets, known.cell);
+    drop(sheets);
+    let on_creases = inserted.seats.iter().filter(|s| matches!(s, Seat::Along(..))).count();
+    let at_corners = inserted.seats.iter().filter(|s| matches!(s, Seat::At)).count();
+    let fans = Fans::new(mesh);
+    settle::settle(mesh, &fans, &inserted);
+    let folded = tidy::tidy(mesh, fans, &mut inserted, known.cell);
+    let (taken_back, intersections) = embed::embed(mesh, first, &inserted.origins, known.cell);
+    super::clip::drop_unused(mesh);
+    SharpReport { on_planes, on_creases, at_corners, folded, taken_back, intersections }
 }

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::Known;
-use super::curved::Sides;
+use super::curved;
 use super::evidence::unproven;
 use super::stars::Stars;
 use crate::feature::{Flat, NearFacet};
@@ -21,11 +21,13 @@ const MOST: usize = 4;
 /// Rounds in which vertices look at their neighbours.
 const ROUNDS: usize = 3;
 /// What it costs, in squared cells, to be of another sheet than all neighbours.
-const DISAGREEMENT: f64 = 0.3;
+pub(super) const DISAGREEMENT: f64 = 0.3;
 /// A vertex that has one plane near, and that at less than this cost, is on it.
 const CERTAIN: f64 = 0.01;
 /// How many of the nearest points tell whether a vertex is on a plane at all.
 const POINTS: usize = 8;
+/// Vertices that one task looks at.
+const CHUNK: usize = 1 << 12;
 
 /// A sheet that a vertex may belong to.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,97 +45,122 @@ pub(super) struct Sheet {
     pub(super) plane: Option<u32>,
     /// The plane, or the tangent plane of the curved part.
     pub(super) flat: Flat,
-    /// Where the vertex lies on it.
-    pub(super) position: Vec3,
-    /// Whether it may meet a curved part in a crease.
-    pub(super) creased: bool,
 }
 
 /// Two neighbouring vertices on curved parts have a crease between them from this angle on; its cosine: 25 degrees.
 pub(super) const CREASE: f64 = 0.906;
 
 impl Sheet {
-    /// Whether a crease runs between two neighbouring vertices.
+    /// Whether a crease lies between this and another.
     pub(super) fn meets(&self, other: &Self) -> bool {
         match (self.plane, other.plane) {
             (Some(a), Some(b)) => a != b,
-            _ if !(self.creased && other.creased) => false,
             _ => vec3::dot(self.flat.normal, other.flat.normal) < CREASE,
         }
     }
 }
 
 /// The sheets of all vertices.
-pub(super) fn sheets(mesh: &Mesh, known: &Known) -> Vec<Sheet> {
+pub(super) struct Sheets {
+    of: Vec<Sheet>,
+    curved_creases: bool,
+}
+
+impl Sheets {
+    /// The sheet of a vertex.
+    pub(super) fn of(&self, v: u32) -> &Sheet {
+        &self.of[v as usize]
+    }
+
+    /// Whether a crease runs between two neighbouring vertices.
+    pub(super) fn meet(&self, a: u32, b: u32) -> bool {
+        let (a, b) = (self.of(a), self.of(b));
+        let may = self.curved_creases || a.plane.is_some() && b.plane.is_some();
+        may && a.meets(b)
+    }
+}
+
+/// A vertex that may be on several sheets.
+struct Contested {
+    vertex: u32,
+    candidates: Vec<Candidate>,
+}
+
+/// Finds the sheets of all vertices.
+pub(super) fn sheets(mesh: &Mesh, stars: &Stars, known: &Known) -> Sheets {
     let normals = normals(mesh);
-    let stars = Stars::new(mesh);
-    let candidates: Vec<Vec<Candidate>> = mesh
-        .vertices
-        .par_iter()
-        .zip(&normals)
-        .map_init(Vec::new, |found, (&p, &normal)| candidates(p, normal, known, found))
-        .collect();
-    let planes = agreed(&candidates, &stars);
-    let sides = Sides::new(mesh, &stars, &normals, &planes, known);
-    let mut sheets: Vec<Sheet> = (0..mesh.vertices.len())
-        .into_par_iter()
-        .map(|v| {
-            let p = mesh.vertices[v];
-            let on = |i: u32| {
-                let flat = known.facets.flats[i as usize];
-                Sheet { plane: Some(i), flat, position: flat.foot(p), creased: known.curved_creases }
-            };
-            match sides.best(v, &candidates[v], planes[v]) {
-                Some(sheet) => sheet,
-                None => match planes[v] {
-                    Some(i) => on(i),
-                    None => Sheet {
-                        plane: None,
-                        flat: Flat::through(sides.normals[v], p),
-                        position: p,
-                        creased: known.curved_creases,
-                    },
-                },
-            }
-        })
-        .collect();
-    let rivals = |v: usize| {
-        let on_planes = candidates[v].iter().filter_map(|c| Some(known.facets.flats[c.plane? as usize]));
-        on_planes.chain(sides.flats(v)).collect::<Vec<Flat>>()
+    let (mut planes, contested) = candidates(mesh, &normals, known);
+    agree(&mut planes, &contested, stars);
+    let flat_of = |i: u32| known.facets.flats[i as usize];
+    let sheet = |v: usize, normal: Vec3| match planes[v] {
+        Some(i) => Sheet { plane: Some(i), flat: flat_of(i) },
+        None => Sheet { plane: None, flat: Flat::through(normal, mesh.vertices[v]) },
     };
-    let unproven = unproven(mesh, &stars, known, &sheets, rivals);
-    sheets.par_iter_mut().zip(unproven).enumerate().filter(|(_, (_, unproven))| *unproven).for_each(
-        |(v, (sheet, _))| {
-            let p = mesh.vertices[v];
-            *sheet = Sheet { plane: None, flat: Flat::through(normals[v], p), position: p, creased: sheet.creased };
-        },
-    );
+    let of = if known.curved_creases {
+        let own = |v: u32| match contested.binary_search_by_key(&v, |c| c.vertex) {
+            Ok(i) => contested[i].candidates.clone(),
+            Err(_) => planes[v as usize].map(|i| Candidate { plane: Some(i), cost: 0.0 }).into_iter().collect(),
+        };
+        curved::sheets(mesh, stars, &normals, &planes, own, known)
+    } else {
+        (0..planes.len()).into_par_iter().map(|v| sheet(v, normals[v])).collect()
+    };
+    drop((planes, contested));
+    let mut sheets = Sheets { of, curved_creases: known.curved_creases };
+    for (v, share) in unproven(mesh, stars, known, &sheets) {
+        let (p, normal) = (mesh.vertices[v as usize], normals[v as usize]);
+        let position = vec3::lerp(p, sheets.of(v).flat.foot(p), share);
+        sheets.of[v as usize] = Sheet { plane: None, flat: Flat::through(normal, position) };
+    }
     sheets
 }
 
-/// The cheapest candidate of each vertex, where it costs something to differ from one's neighbours.
-fn agreed(candidates: &[Vec<Candidate>], stars: &Stars) -> Vec<Option<u32>> {
-    let cheapest = |of: &Vec<Candidate>| of.iter().min_by(|a, b| a.cost.total_cmp(&b.cost)).and_then(|c| c.plane);
-    let mut plane: Vec<Option<u32>> = candidates.par_iter().map(cheapest).collect();
+/// The cheapest plane of each vertex, and the vertices that have a choice, in their order.
+fn candidates(mesh: &Mesh, normals: &[Vec3], known: &Known) -> (Vec<Option<u32>>, Vec<Contested>) {
+    let parts: Vec<(Vec<Option<u32>>, Vec<Contested>)> = mesh
+        .vertices
+        .par_chunks(CHUNK)
+        .enumerate()
+        .map(|(chunk, vertices)| {
+            let mut found = Vec::new();
+            let (mut planes, mut contested) = (Vec::with_capacity(vertices.len()), Vec::new());
+            for (i, &p) in vertices.iter().enumerate() {
+                let v = chunk * CHUNK + i;
+                let candidates = planes_near(p, normals[v], known, &mut found);
+                planes.push(candidates.iter().min_by(|a, b| a.cost.total_cmp(&b.cost)).and_then(|c| c.plane));
+                if candidates.len() > 1 {
+                    contested.push(Contested { vertex: v as u32, candidates });
+                }
+            }
+            (planes, contested)
+        })
+        .collect();
+    let (planes, contested): (Vec<_>, Vec<_>) = parts.into_iter().unzip();
+    (planes.concat(), contested.into_iter().flatten().collect())
+}
+
+/// Lets vertices with a choice agree with their neighbours, as it costs something to differ from them.
+fn agree(planes: &mut [Option<u32>], contested: &[Contested], stars: &Stars) {
     for _ in 0..ROUNDS {
-        plane = candidates
+        let chosen: Vec<Option<u32>> = contested
             .par_iter()
-            .enumerate()
-            .map(|(v, own)| {
-                let around = stars.around(v);
+            .map(|Contested { vertex, candidates }| {
+                let around = stars.around(*vertex);
                 let cost = |c: &Candidate| {
-                    let others = around.iter().filter(|&&u| plane[u as usize] != c.plane).count();
+                    let others = around.iter().filter(|&&u| planes[u as usize] != c.plane).count();
                     c.cost + DISAGREEMENT * others as f64 / around.len().max(1) as f64
                 };
-                own.iter().min_by(|a, b| cost(a).total_cmp(&cost(b))).and_then(|c| c.plane)
+                candidates.iter().min_by(|a, b| cost(a).total_cmp(&cost(b))).and_then(|c| c.plane)
             })
             .collect();
+        for (Contested { vertex, .. }, plane) in contested.iter().zip(chosen) {
+            planes[*vertex as usize] = plane;
+        }
     }
-    plane
 }
 
 /// The planes that a vertex may belong to, and what it costs to be on a curved part.
-fn candidates(p: Vec3, normal: Vec3, known: &Known, found: &mut Vec<NearFacet>) -> Vec<Candidate> {
+fn planes_near(p: Vec3, normal: Vec3, known: &Known, found: &mut Vec<NearFacet>) -> Vec<Candidate> {
     let cell = known.cell;
     known.facets.near(p, REACH * cell, found);
     let mut own: Vec<Candidate> = found
@@ -152,7 +179,7 @@ fn candidates(p: Vec3, normal: Vec3, known: &Known, found: &mut Vec<NearFacet>) 
     own.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     own.truncate(MOST);
     match own.as_slice() {
-        [] => return vec![Candidate { plane: None, cost: 0.0 }],
+        [] => return own,
         [only] if only.cost < CERTAIN => return own,
         _ => {}
     }

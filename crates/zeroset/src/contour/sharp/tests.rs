@@ -83,6 +83,7 @@ fn sharpened(f: impl Fn(Vec3) -> f64, features: &Features, points: &[Vec3]) -> (
         points: &tree,
         plane_of: &plane_of,
         curved_creases: true,
+        noise: 0.0,
         cell: CELL,
     };
     let report = sharpen(&mut mesh, &known);

@@ -4,8 +4,12 @@
 //! squared sides. Around each bad triangle an edge is collapsed or flipped or a vertex is moved within its seat, if that makes the
 //! worst triangle there better.
 
+use rayon::prelude::*;
+use rustc_hash::FxHashMap;
+
 use super::Seat;
 use super::insert::Inserted;
+use super::stars::Fans;
 use crate::mesh::Mesh;
 use crate::vec3::{self, Vec3};
 
@@ -15,13 +19,26 @@ const BAD: f64 = 0.08;
 const PASSES: usize = 8;
 /// A vertex this close to a plane or a line lies on it, in cells.
 const ON: f64 = 1e-3;
+/// Triangles that were changed face the way they did on the surface of F, within this cosine: 60 degrees.
+const TURN: f64 = 0.5;
 /// Sheets that differ by less have no crease between them: the cosine of 15 degrees.
 const FLAT: f64 = 0.966;
 
 /// Mends bad triangles; the number of those left.
-pub(super) fn tidy(mesh: &mut Mesh, inserted: Inserted, cell: f64) -> usize {
-    let mut patchwork = Patchwork::new(std::mem::take(mesh), inserted, cell);
-    let mut bad: Vec<u32> = (0..patchwork.triangles.len() as u32).filter(|&t| patchwork.is_bad(t)).collect();
+pub(super) fn tidy(mesh: &mut Mesh, fans: Fans, inserted: &mut Inserted, cell: f64) -> usize {
+    let mut patchwork = Patchwork {
+        vertices: std::mem::take(&mut mesh.vertices),
+        triangles: std::mem::take(&mut mesh.triangles),
+        origins: &inserted.origins,
+        first_areas: FxHashMap::default(),
+        seats: &inserted.seats,
+        facing: &inserted.facing,
+        fans,
+        changed: FxHashMap::default(),
+        cell,
+    };
+    let all = 0..patchwork.triangles.len() as u32;
+    let mut bad: Vec<u32> = all.into_par_iter().filter(|&t| patchwork.is_bad(t)).collect();
     for _ in 0..PASSES {
         let mut touched = Vec::new();
         for &t in &bad {
@@ -37,56 +54,73 @@ pub(super) fn tidy(mesh: &mut Mesh, inserted: Inserted, cell: f64) -> usize {
             break;
         }
     }
-    *mesh = patchwork.finish();
+    mesh.vertices = patchwork.vertices;
+    mesh.triangles = patchwork.triangles;
+    mesh.triangles.retain(|corners| *corners != DEAD);
     bad.len()
 }
 
+/// The corners of a triangle that was taken away.
+const DEAD: [u32; 3] = [u32::MAX; 3];
+
 /// A mesh whose triangles can be changed.
-struct Patchwork {
+struct Patchwork<'a> {
     vertices: Vec<Vec3>,
-    seats: Vec<Seat>,
-    /// Dead triangles are `None`.
-    triangles: Vec<Option<[u32; 3]>>,
+    triangles: Vec<[u32; 3]>,
+    /// Where the vertices are on the surface of F.
+    origins: &'a [Vec3],
+    /// The area on the surface of F of the triangles that have changed, as a vector, before they did.
+    first_areas: FxHashMap<u32, Vec3>,
+    seats: &'a [Seat],
     /// The normal of each triangle's sheet.
-    facing: Vec<Vec3>,
-    /// The triangles around each vertex.
-    stars: Vec<Vec<u32>>,
+    facing: &'a [[f32; 3]],
+    /// The triangles around each vertex, as they were at first.
+    fans: Fans,
+    /// The fans that have changed.
+    changed: FxHashMap<u32, Vec<u32>>,
     cell: f64,
-    rest: Mesh,
 }
 
-impl Patchwork {
-    fn new(mut mesh: Mesh, inserted: Inserted, cell: f64) -> Self {
-        let mut stars: Vec<Vec<u32>> = vec![Vec::new(); mesh.vertices.len()];
-        for (t, corners) in mesh.triangles.iter().enumerate() {
-            corners.iter().for_each(|&v| stars[v as usize].push(t as u32));
-        }
-        Self {
-            vertices: std::mem::take(&mut mesh.vertices),
-            seats: inserted.seats,
-            triangles: std::mem::take(&mut mesh.triangles).into_iter().map(Some).collect(),
-            facing: inserted.facing,
-            stars,
-            cell,
-            rest: mesh,
-        }
+impl Patchwork<'_> {
+    /// The triangles around a vertex.
+    fn fan(&self, v: u32) -> &[u32] {
+        self.changed.get(&v).map_or_else(|| self.fans.of(v), Vec::as_slice)
     }
 
-    fn finish(self) -> Mesh {
-        let mut mesh = self.rest;
-        mesh.vertices = self.vertices;
-        mesh.triangles = self.triangles.into_iter().flatten().collect();
-        super::super::clip::drop_unused(&mut mesh);
-        mesh
+    /// The same, to change them.
+    fn fan_mut(&mut self, v: u32) -> &mut Vec<u32> {
+        self.changed.entry(v).or_insert_with(|| self.fans.of(v).to_vec())
     }
 
-    fn quality_of(&self, corners: [u32; 3], facing: Vec3) -> f64 {
-        quality(corners.map(|v| self.vertices[v as usize]), facing)
+    /// The corners of a triangle that is there.
+    fn corners(&self, t: u32) -> Option<[u32; 3]> {
+        Some(self.triangles[t as usize]).filter(|corners| *corners != DEAD)
+    }
+
+    fn quality_of(&self, corners: [u32; 3], t: u32) -> f64 {
+        quality(corners.map(|v| self.vertices[v as usize]), self.facing[t as usize].map(f64::from))
+    }
+
+    /// The area of a triangle as it is on the surface of F, as a vector.
+    fn on_field(&self, corners: [u32; 3]) -> Vec3 {
+        let [a, b, c] = corners.map(|v| self.origins[v as usize]);
+        vec3::cross(vec3::sub(b, a), vec3::sub(c, a))
+    }
+
+    /// Whether a triangle with new corners faces another way on the surface of F than it did at first. The mesh is to stay embedded there.
+    fn turns(&self, t: u32, corners: [u32; 3]) -> bool {
+        let first = self.first_areas.get(&t).copied().unwrap_or_else(|| self.on_field(self.triangles[t as usize]));
+        let new = self.on_field(corners);
+        vec3::dot(first, new) <= TURN * vec3::norm(first) * vec3::norm(new)
+    }
+
+    fn remember(&mut self, t: u32) {
+        let area = self.on_field(self.triangles[t as usize]);
+        self.first_areas.entry(t).or_insert(area);
     }
 
     fn quality(&self, t: u32) -> f64 {
-        let t = t as usize;
-        self.triangles[t].map_or(1.0, |corners| self.quality_of(corners, self.facing[t]))
+        self.corners(t).map_or(1.0, |corners| self.quality_of(corners, t))
     }
 
     fn is_bad(&self, t: u32) -> bool {
@@ -95,7 +129,7 @@ impl Patchwork {
 
     /// Tries every change around a bad triangle until one helps.
     fn mend(&mut self, t: u32, touched: &mut Vec<u32>) {
-        let Some(corners) = self.triangles[t as usize] else { return };
+        let Some(corners) = self.corners(t) else { return };
         let mut sides: Vec<(f64, [u32; 2])> = (0..3)
             .map(|i| {
                 let ends = [corners[i], corners[(i + 1) % 3]];
@@ -122,13 +156,13 @@ impl Patchwork {
 
     /// The triangles at the edge from a to b.
     fn at_edge(&self, a: u32, b: u32) -> Vec<u32> {
-        let has = |t: &u32| self.triangles[*t as usize].is_some_and(|corners| corners.contains(&b));
-        self.stars[a as usize].iter().copied().filter(has).collect()
+        let has = |t: &u32| self.triangles[*t as usize].contains(&b);
+        self.fan(a).iter().copied().filter(has).collect()
     }
 
     fn around(&self, v: u32) -> Vec<u32> {
-        let corners = self.stars[v as usize].iter().filter_map(|&t| self.triangles[t as usize]);
-        let mut around: Vec<u32> = corners.flatten().filter(|&u| u != v).collect();
+        let corners = self.fan(v).iter().flat_map(|&t| self.triangles[t as usize]);
+        let mut around: Vec<u32> = corners.filter(|&u| u != v).collect();
         around.sort_unstable();
         around.dedup();
         around
@@ -150,8 +184,7 @@ impl Patchwork {
     }
 
     fn is_rim(&self, v: u32) -> bool {
-        let star = &self.stars[v as usize];
-        self.around(v).len() != star.len()
+        self.around(v).len() != self.fan(v).len()
     }
 
     /// Moves `from` to `to`, where the two become one.
@@ -165,27 +198,24 @@ impl Patchwork {
         if gone.len() != 2 || common != 2 || mine.len() < 4 {
             return false;
         }
-        let star = self.stars[from as usize].clone();
+        let star = self.fan(from).to_vec();
         let before = star.iter().map(|&t| self.quality(t)).fold(1.0, f64::min);
         let moved = |corners: [u32; 3]| corners.map(|v| if v == from { to } else { v });
         let kept: Vec<u32> = star.iter().copied().filter(|t| !gone.contains(t)).collect();
-        let after = kept
-            .iter()
-            .filter_map(|&t| Some(self.quality_of(moved(self.triangles[t as usize]?), self.facing[t as usize])))
-            .fold(1.0, f64::min);
-        if after <= before {
+        let after = kept.iter().map(|&t| self.quality_of(moved(self.triangles[t as usize]), t)).fold(1.0, f64::min);
+        if after <= before || kept.iter().any(|&t| self.turns(t, moved(self.triangles[t as usize]))) {
             return false;
         }
+        kept.iter().for_each(|&t| self.remember(t));
         for &t in &gone {
-            if let Some(corners) = self.triangles[t as usize].take() {
-                corners.iter().for_each(|&v| self.stars[v as usize].retain(|&u| u != t));
-            }
+            let corners = std::mem::replace(&mut self.triangles[t as usize], DEAD);
+            corners.iter().for_each(|&v| self.fan_mut(v).retain(|&u| u != t));
         }
         for &t in &kept {
-            self.triangles[t as usize] = self.triangles[t as usize].map(moved);
-            self.stars[to as usize].push(t);
+            self.triangles[t as usize] = moved(self.triangles[t as usize]);
+            self.fan_mut(to).push(t);
         }
-        self.stars[from as usize].clear();
+        self.fan_mut(from).clear();
         touched.extend(kept);
         true
     }
@@ -194,12 +224,11 @@ impl Patchwork {
     fn flip(&mut self, a: u32, b: u32, touched: &mut Vec<u32>) -> bool {
         let pair = self.at_edge(a, b);
         let &[s, t] = pair.as_slice() else { return false };
-        if vec3::dot(self.facing[s as usize], self.facing[t as usize]) < FLAT {
+        let facing = [s, t].map(|t| self.facing[t as usize].map(f64::from));
+        if vec3::dot(facing[0], facing[1]) < FLAT {
             return false;
         }
-        let (Some(first), Some(second)) = (self.triangles[s as usize], self.triangles[t as usize]) else {
-            return false;
-        };
+        let (first, second) = (self.triangles[s as usize], self.triangles[t as usize]);
         // Make a -> b the direction in which the first triangle runs along the edge.
         let runs =
             |corners: [u32; 3], from: u32, to: u32| (0..3).any(|i| corners[i] == from && corners[(i + 1) % 3] == to);
@@ -211,18 +240,18 @@ impl Patchwork {
         }
         let before = self.quality(s).min(self.quality(t));
         let new = [[c, a, d], [d, b, c]];
-        let after =
-            self.quality_of(new[0], self.facing[s as usize]).min(self.quality_of(new[1], self.facing[t as usize]));
-        if after <= before {
+        let after = self.quality_of(new[0], s).min(self.quality_of(new[1], t));
+        if after <= before || self.turns(s, new[0]) || self.turns(t, new[1]) {
             return false;
         }
+        pair.iter().for_each(|&t| self.remember(t));
         for (&t, corners) in pair.iter().zip(new) {
-            self.triangles[t as usize] = Some(corners);
+            self.triangles[t as usize] = corners;
         }
-        self.stars[a as usize].retain(|&u| u != t);
-        self.stars[b as usize].retain(|&u| u != s);
-        self.stars[c as usize].push(t);
-        self.stars[d as usize].push(s);
+        self.fan_mut(a).retain(|&u| u != t);
+        self.fan_mut(b).retain(|&u| u != s);
+        self.fan_mut(c).push(t);
+        self.fan_mut(d).push(s);
         touched.extend(pair);
         true
     }
@@ -247,7 +276,7 @@ impl Patchwork {
             Seat::On(flat) => flat.foot(mean(&around)),
             Seat::Loose => mean(&around),
         };
-        let star = self.stars[v as usize].clone();
+        let star = self.fan(v).to_vec();
         let worst = |this: &Self| star.iter().map(|&t| this.quality(t)).fold(1.0, f64::min);
         let before = worst(self);
         for step in [1.0, 0.5, 0.25] {
@@ -262,7 +291,7 @@ impl Patchwork {
     }
 }
 
-/// Twice the root of three times the area over the sum of squared sides... signed by the direction it should face.
+/// The area over that of the equilateral triangle with the same sum of squared sides; negative for one that faces away.
 fn quality([a, b, c]: [Vec3; 3], facing: Vec3) -> f64 {
     let (u, v, w) = (vec3::sub(b, a), vec3::sub(c, a), vec3::sub(c, b));
     let sides = vec3::norm_squared(u) + vec3::norm_squared(v) + vec3::norm_squared(w);
