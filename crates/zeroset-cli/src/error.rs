@@ -25,6 +25,20 @@ pub(crate) enum CliError {
         /// Why.
         source: ReconstructError,
     },
+    /// Constraints far from the points.
+    #[error(
+        "{}: none of its lines and polygons lies in the box of the points: they reach {own}, the points {points}; \
+         give them in the coordinates of the points",
+        shown(path)
+    )]
+    ConstraintsAstray {
+        /// The file.
+        path: PathBuf,
+        /// Its box, in words.
+        own: String,
+        /// The box of the points, in words.
+        points: String,
+    },
     /// The fit in the plane is not possible.
     #[error("{}: {source}", shown(input))]
     Fit2d {

@@ -7,6 +7,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
+use zeroset::constraint::ConstraintReport;
 use zeroset::contour::{ContourReport, SharpReport};
 use zeroset::fit::cascade::{FitReport, PolishReport};
 use zeroset::mesh::{DroppedComponents, SimplifyReport};
@@ -117,6 +118,8 @@ pub(crate) struct Report<'a> {
     polish: Option<&'a PolishReport>,
     contour: Option<&'a ContourReport>,
     sharp: Option<&'a SharpReport>,
+    /// Null without any.
+    constraints: Option<&'a ConstraintReport>,
     mesh: Option<Counts>,
     components: Option<ComponentsReport>,
     /// Null if the mesh was not to be simplified.
@@ -149,6 +152,7 @@ impl<'a> Report<'a> {
             polish: None,
             contour: None,
             sharp: None,
+            constraints: None,
             mesh: None,
             components: None,
             simplify: None,
@@ -188,6 +192,7 @@ impl<'a> Report<'a> {
             polish: done.polish.as_ref(),
             contour: Some(&done.contour),
             sharp: done.sharp.as_ref(),
+            constraints: done.constraints.as_ref(),
             mesh: Some(Counts { vertices: done.vertices, triangles: done.triangles }),
             components: Some(ComponentsReport::new(done)),
             simplify: done.simplify.as_ref(),

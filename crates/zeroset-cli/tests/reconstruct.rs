@@ -125,6 +125,7 @@ fn the_report_has_its_fields() {
         names(&report),
         [
             "components",
+            "constraints",
             "contour",
             "crs",
             "filters",

@@ -194,6 +194,18 @@ pub enum IoError {
         /// Points or vertices given.
         points: usize,
     },
+    /// A line or polygon cannot be a constraint.
+    #[error("{}: {item} {index} {source}", shown(path))]
+    Constraint {
+        /// The file.
+        path: PathBuf,
+        /// What it is in the file.
+        item: &'static str,
+        /// Its number there.
+        index: u64,
+        /// Why.
+        source: zeroset::constraint::ConstraintError,
+    },
     /// A list of files to read is empty.
     #[error("no input file was given; name at least one point cloud")]
     NoInput,

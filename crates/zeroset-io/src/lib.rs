@@ -1,10 +1,11 @@
-//! Formats of point clouds, meshes and features for `zeroset`.
+//! Formats of point clouds, meshes, features and constraints for `zeroset`.
 //!
 //! | | read | written |
 //! |---|---|---|
 //! | clouds | LAS, LAZ (COPC too), PLY, XYZ / TXT / CSV / ASC, PTS, PCD, E57 | LAS, LAZ, PLY, XYZ / TXT / CSV / ASC, PTS |
 //! | meshes | PLY, OBJ, STL, OFF, GLB | PLY, OBJ, STL, OFF, GLB |
 //! | features | JSON | JSON, GeoJSON, OBJ, PLY, DXF |
+//! | constraints | OBJ, GeoJSON, DXF, and features as JSON | |
 //! | data in the plane | JSON, CSV | JSON |
 //!
 //! ```no_run
@@ -28,6 +29,7 @@
 //! - GPS time, return numbers, normals and extra columns are not kept.
 
 pub mod cloud;
+pub mod constraints;
 mod error;
 pub mod features;
 mod format;
@@ -43,6 +45,7 @@ pub use cloud::{
     CloudFile, LinearUnit, NO_CLASS, NO_COLOR, NO_INTENSITY, ReadReport, Source, read_cloud, read_cloud_bytes,
     read_clouds, write_cloud,
 };
+pub use constraints::{ConstraintFile, ConstraintFormat, read_constraints, read_constraints_bytes};
 pub use error::{IoError, shown};
 pub use features::{FeatureFile, FeatureFormat, FeatureOutput, read_features, read_features_bytes, write_features};
 pub use format::{CloudFormat, MeshFormat};

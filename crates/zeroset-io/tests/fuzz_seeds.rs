@@ -41,6 +41,11 @@ fn write_seeds() {
         "edges":[{"id":0,"kind":"convex","planes":[0],"angle":90,"length":1,"polyline":[[0,0,2],[1,0,2]]}],
         "corners":[{"id":0,"kind":"mixed","position":[0,0,2],"planes":[0],"edges":[0]}],"parameters":{}}"#;
     write("features_json".into(), "sound", features.into());
+    let line = r#"{"type":"LineString","coordinates":[[0,0,1],[1,0,1]]}"#;
+    write("constraints_geojson".into(), "sound", line.into());
+    write("constraints_obj".into(), "sound", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nl 1 -1\n".into());
+    let drawing = "0|SECTION|2|ENTITIES|0|LWPOLYLINE|90|2|38|1|10|0|20|0|42|1|10|2|20|0|0|ENDSEC|0|EOF|";
+    write("constraints_dxf".into(), "sound", drawing.replace('|', "\n").into());
     write("planar_csv".into(), "sound", "x,y,weight\n1,2,3\n# c\n4 5;6\n".into());
     let stl = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n";
     write("mesh_stl".into(), "text", stl.into());

@@ -4,12 +4,13 @@
 //! no normals and no orientation. F is negative inside and positive outside.
 //!
 //! The rooms follow the data: [`cloud`] -> [`domain`] -> [`basis`] -> [`fit`] -> [`field`] -> [`contour`] -> [`mesh`]; [`reconstruct`]
-//! walks through all of them in one call. [`feature`] finds planes, edges and corners. The remaining
+//! walks through all of them in one call. [`feature`] finds planes, edges and corners, and [`constraint`] holds those that the user knows. The remaining
 //! rooms serve all of these: [`spatial`] answers nearest-neighbour questions, [`sample`] makes scenes with a known truth, and
 //! [`monitor`] carries progress out and a wish to stop in.
 
 pub mod basis;
 pub mod cloud;
+pub mod constraint;
 pub mod contour;
 pub mod domain;
 pub mod feature;

@@ -34,6 +34,7 @@ Examples:
   zeroset reconstruct tile.laz -o houses.obj --classes 2,6 --bounds 84800,447400,84900,447500
   zeroset reconstruct statue.ply -o statue.stl --scene object --up y
   zeroset reconstruct tile.laz -o light.ply --max-error 0.05
+  zeroset reconstruct tile.laz -o streets.ply --quality normal --constraints kerbs.dxf --constraints roofs.geojson
   zeroset reconstruct tile.laz --dry-run
 
 Lengths are in the unit of the input, mostly metres.
@@ -102,6 +103,15 @@ pub enum QualityChoice {
     Fine,
 }
 
+/// What polygons among the constraints are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum PolygonsChoice {
+    /// Parts of the surface.
+    Faces,
+    /// Only their rings are on the surface.
+    Outlines,
+}
+
 /// Arguments of `zeroset reconstruct`.
 #[derive(Debug, Clone, clap::Args)]
 #[command(after_help = RECONSTRUCT_EXAMPLES)]
@@ -138,6 +148,14 @@ pub struct ReconstructArgs {
     /// Weight of the points against smoothness, without unit [default: 1 to 16, by the noise of the points over the cell].
     #[arg(long, value_name = "ALPHA", value_parser = values::positive)]
     pub screening: Option<f64>,
+    /// Lines and polygons that the surface passes through: obj, geojson, dxf, or json of `zeroset features`, in the coordinates of the input;
+    /// may be repeated.
+    #[arg(long, value_name = "FILE")]
+    pub constraints: Vec<PathBuf>,
+    /// What polygons among the constraints are: faces, parts of the surface such as walls and roofs, or outlines, such as footprints, of which
+    /// only the rings are on it [default: faces].
+    #[arg(long, value_name = "WHAT", hide_possible_values = true, requires = "constraints")]
+    pub constraint_polygons: Option<PolygonsChoice>,
     /// Values of the nearest point that each vertex gets: off, rgb, intensity or class [default: rgb].
     #[arg(long, value_name = "WHICH", hide_possible_values = true)]
     pub attributes: Option<AttributesChoice>,

@@ -1,10 +1,12 @@
 //! `zeroset reconstruct`.
 
+mod known;
 mod text;
 
 use std::time::Instant;
 
 use zeroset::cloud::Cloud;
+use zeroset::constraint::Constraints;
 use zeroset::mesh::Mesh;
 use zeroset::reconstruct::{
     AttributeChoice, MinComponent, Plan, PlanReport, Quality, ReconstructError, ReconstructParams, ReconstructReport,
@@ -24,7 +26,8 @@ pub(crate) fn run(args: &ReconstructArgs) -> Result<(), CliError> {
     let start = Instant::now();
     let console = Console::of(&args.run);
     let formats = check(args)?;
-    let params = params(args, &formats);
+    let mut params = params(args, &formats);
+    let known = known::read(args)?;
     threads::start(args.run.threads)?;
 
     let progress = Progress::new(console);
@@ -36,6 +39,7 @@ pub(crate) fn run(args: &ReconstructArgs) -> Result<(), CliError> {
     }
     let mut lines = Lines::new(console);
     input.describe(console, &mut lines);
+    params.constraints = known::place(known, &args.constraints, &input.cloud, &mut lines)?;
 
     let progress = Progress::new(console);
     let failed = |source: ReconstructError| CliError::Reconstruct { inputs: in_words(&args.input.inputs), source };
@@ -69,7 +73,7 @@ pub(crate) fn run(args: &ReconstructArgs) -> Result<(), CliError> {
     Report::done(&input, &done, args, &params, output, seconds).write()
 }
 
-/// What was typed, as the core understands it.
+/// What was typed, as the core understands it, but for the constraints.
 fn params(args: &ReconstructArgs, formats: &[CloudFormat]) -> ReconstructParams {
     ReconstructParams {
         scene: scene(&args.scene, formats),
@@ -103,6 +107,7 @@ fn params(args: &ReconstructArgs, formats: &[CloudFormat]) -> ReconstructParams 
             Some(AttributesChoice::Intensity) => AttributeChoice::Intensity,
             Some(AttributesChoice::Class) => AttributeChoice::Class,
         },
+        constraints: Constraints::default(),
         memory: args.run.memory.unwrap_or_else(memory::default_limit),
     }
 }
@@ -116,7 +121,9 @@ fn check(args: &ReconstructArgs) -> Result<Vec<CloudFormat>, CliError> {
     let formats = check_inputs(&args.input.inputs)?;
     let outputs = [(args.output.as_deref(), "the output"), (args.run.report.as_deref(), "the report")];
     let outputs: Vec<_> = outputs.into_iter().filter_map(|(path, role)| Some((path?, role))).collect();
-    check_outputs(&args.input.inputs, &outputs)?;
+    let read = [&args.input.inputs[..], &args.constraints[..]].concat();
+    check_outputs(&read, &outputs)?;
+    known::check(&args.constraints)?;
     Ok(formats)
 }
 

@@ -1,8 +1,10 @@
 //! What a reconstruction says to people.
 
+use zeroset::constraint::ConstraintPlan;
 use zeroset::fit::cascade::PolishParams;
 use zeroset::mesh::{Mesh, SimplifyParams, topology};
 use zeroset::reconstruct::{PlanReport, ReconstructReport};
+use zeroset_io::LinearUnit;
 
 use crate::input::Input;
 use crate::report::{ComponentsReport, OutputReport, Seconds};
@@ -47,7 +49,19 @@ pub(super) fn plan(plan: &PlanReport, input: &Input, memory: u64) -> String {
         ("polish", polish(plan.polish.as_ref())),
         ("simplify", simplification(plan.simplify.as_ref())),
         ("attributes", name(plan.attributes)),
+        ("constraints", constraints(plan.constraints.as_ref(), unit)),
     ])
+}
+
+/// How much the user knows of the surface.
+fn constraints(plan: Option<&ConstraintPlan>, unit: Option<LinearUnit>) -> String {
+    plan.map_or_else(
+        || "none".to_owned(),
+        |plan| {
+            let lines = format!("{} lines, {} in all", count(plan.lines_used), length(plan.length, unit));
+            format!("{lines}; {} polygons, {} square units", count(plan.polygons_used), significant(plan.area, 4))
+        },
+    )
 }
 
 /// How F is polished.
@@ -84,6 +98,14 @@ pub(super) fn summary(done: &ReconstructReport, output: &OutputReport, seconds: 
     }
     if let Some(report) = &done.simplify {
         text += &format!("\nsimplified: {}", outcome(report));
+    }
+    if let Some(report) = &done.constraints {
+        let unit = input.read.unit;
+        text += &format!(
+            "\nconstraints: the mesh lies {} from them in the mean, 95 % within {}",
+            length(report.mean_distance, unit),
+            length(report.p95_distance, unit)
+        );
     }
     if done.fit.outside_is_clear() == Some(false) {
         text += "\nthe surface runs out of the box of the points, so neither side is clearly outside: the upper one was taken; \

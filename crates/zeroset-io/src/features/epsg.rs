@@ -1,7 +1,7 @@
 //! The EPSG code in the text of a reference system.
 
 /// The code of the horizontal system, out of `EPSG:n`, `EPSG:n+m` or WKT. `None` if the text states none.
-pub(super) fn code(crs: &str) -> Option<u32> {
+pub(crate) fn code(crs: &str) -> Option<u32> {
     let crs = crs.trim();
     if let Some(codes) = crs.strip_prefix("EPSG:").or_else(|| crs.strip_prefix("epsg:")) {
         return codes.split('+').next()?.trim().parse().ok();

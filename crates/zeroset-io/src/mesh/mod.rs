@@ -7,13 +7,14 @@ mod options;
 mod ply;
 mod polygons;
 mod stl;
-mod text;
+pub(crate) mod text;
 
 use std::path::Path;
 
 use zeroset::cloud::{Attributes, choose_offset};
 use zeroset::mesh::Mesh;
 
+pub(crate) use obj::joined_lines;
 pub use options::{WriteOptions, WriteReport};
 pub(crate) use options::{one_line, tolerance, world};
 pub(crate) use ply::{Column, write_points as write_ply_points};

@@ -75,7 +75,7 @@ pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<Mesh, IoError> {
 }
 
 /// A backslash at the end of a line joins it with the next.
-fn joined_lines(bytes: &[u8]) -> Cow<'_, [u8]> {
+pub(crate) fn joined_lines(bytes: &[u8]) -> Cow<'_, [u8]> {
     if !bytes.contains(&b'\\') {
         return Cow::Borrowed(bytes);
     }

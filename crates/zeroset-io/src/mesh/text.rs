@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::IoError;
 
 /// A value of a line, with the number of the line for messages.
-pub(super) fn number(path: &Path, line: u64, token: Option<&[u8]>) -> Result<f64, IoError> {
+pub(crate) fn number(path: &Path, line: u64, token: Option<&[u8]>) -> Result<f64, IoError> {
     let Some(token) = token else {
         return Err(IoError::damaged(path, format!("line {line} ends before its last value")));
     };
@@ -13,7 +13,7 @@ pub(super) fn number(path: &Path, line: u64, token: Option<&[u8]>) -> Result<f64
 }
 
 /// A whole number of a line.
-pub(super) fn integer(path: &Path, line: u64, token: Option<&[u8]>) -> Result<i64, IoError> {
+pub(crate) fn integer(path: &Path, line: u64, token: Option<&[u8]>) -> Result<i64, IoError> {
     let Some(token) = token else {
         return Err(IoError::damaged(path, format!("line {line} ends before its last value")));
     };
@@ -27,12 +27,12 @@ fn not_a_number(path: &Path, line: u64, token: &[u8]) -> IoError {
 }
 
 /// Lines with their numbers from 1, ended by LF, CR LF or CR.
-pub(super) fn lines(bytes: &[u8]) -> impl Iterator<Item = (u64, &[u8])> {
+pub(crate) fn lines(bytes: &[u8]) -> impl Iterator<Item = (u64, &[u8])> {
     let end = if bytes.contains(&b'\n') || !bytes.contains(&b'\r') { b'\n' } else { b'\r' };
     (1..).zip(bytes.split(move |b| *b == end)).map(|(number, line)| (number, line.trim_ascii()))
 }
 
 /// Values of a line.
-pub(super) fn tokens(line: &[u8]) -> impl Iterator<Item = &[u8]> {
+pub(crate) fn tokens(line: &[u8]) -> impl Iterator<Item = &[u8]> {
     line.split(u8::is_ascii_whitespace).filter(|token| !token.is_empty())
 }

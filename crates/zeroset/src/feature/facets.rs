@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::{Features, triangulate};
+use super::{Features, Plane, triangulate};
 use crate::mesh::Mesh;
 use crate::spatial::TriangleTree;
 use crate::vec3::{self, Vec3};
@@ -41,7 +41,13 @@ pub(crate) struct Facets {
     triangles: Vec<[Vec3; 3]>,
     /// The plane of each triangle.
     plane_of: Vec<u32>,
+    /// How many of the triangles are those of features.
+    of_features: usize,
     tree: TriangleTree,
+}
+
+fn of_feature(plane: &Plane) -> Flat {
+    Flat { normal: plane.normal, offset: plane.offset }
 }
 
 /// A polygon near a position.
@@ -53,10 +59,25 @@ pub(crate) struct NearFacet {
     pub(crate) distance_squared: f64,
 }
 
+/// Triangles of a plane that is no feature, or of one that the caller knows better.
+#[derive(Debug, Clone)]
+pub(crate) struct Patch {
+    /// Its plane; the normal points outward.
+    pub(crate) flat: Flat,
+    pub(crate) triangles: Vec<[Vec3; 3]>,
+    /// The feature that lies in the same plane, if there is one.
+    pub(crate) feature: Option<u32>,
+}
+
 impl Facets {
     /// The facets of some features.
     pub(crate) fn new(features: &Features) -> Self {
-        let flats = features.planes.iter().map(|plane| Flat { normal: plane.normal, offset: plane.offset }).collect();
+        Self::with_patches(features, &[])
+    }
+
+    /// The same with patches, whose planes come after those of the features; a feature moves to the plane of its patch.
+    pub(crate) fn with_patches(features: &Features, patches: &[Patch]) -> Self {
+        let mut flats: Vec<Flat> = features.planes.iter().map(of_feature).collect();
         let parts: Vec<Vec<[Vec3; 3]>> = features
             .planes
             .par_iter()
@@ -68,19 +89,37 @@ impl Facets {
                 triangulate(plane).into_iter().map(|t| t.map(|corner| corners[corner])).collect()
             })
             .collect();
-        let plane_of = parts.iter().enumerate().flat_map(|(p, part)| part.iter().map(move |_| p as u32)).collect();
-        let triangles: Vec<[Vec3; 3]> = parts.concat();
+        let mut plane_of: Vec<u32> =
+            parts.iter().enumerate().flat_map(|(p, part)| part.iter().map(move |_| p as u32)).collect();
+        let mut triangles: Vec<[Vec3; 3]> = parts.concat();
+        for patch in patches {
+            let plane = patch.feature.unwrap_or(flats.len() as u32);
+            match flats.get_mut(plane as usize) {
+                Some(flat) => *flat = patch.flat,
+                None => flats.push(patch.flat),
+            }
+            plane_of.extend(patch.triangles.iter().map(|_| plane));
+            triangles.extend(&patch.triangles);
+        }
+        let of_features = parts.iter().map(Vec::len).sum();
+        for (corners, &plane) in triangles.iter_mut().zip(&plane_of).take(of_features) {
+            let flat: &Flat = &flats[plane as usize];
+            if *flat != of_feature(&features.planes[plane as usize]) {
+                *corners = corners.map(|corner| flat.foot(corner));
+            }
+        }
         let mesh = Mesh {
             vertices: triangles.as_flattened().to_vec(),
             triangles: (0..triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect(),
             ..Mesh::default()
         };
-        Self { flats, triangles, plane_of, tree: TriangleTree::new(&mesh) }
+        Self { flats, triangles, plane_of, of_features, tree: TriangleTree::new(&mesh) }
     }
 
-    /// The triangles of the polygons with their outward normals.
+    /// The triangles of the features' polygons with their outward normals; those of patches are left out.
     pub(crate) fn oriented_triangles(&self) -> impl Iterator<Item = ([Vec3; 3], Vec3)> + '_ {
-        self.triangles.iter().zip(&self.plane_of).map(|(corners, &plane)| (*corners, self.flats[plane as usize].normal))
+        let own = self.triangles.iter().zip(&self.plane_of).take(self.of_features);
+        own.map(|(corners, &plane)| (*corners, self.flats[plane as usize].normal))
     }
 
     /// Fills `found` with the polygons within a distance, each plane once, by plane.

@@ -76,7 +76,7 @@ pub use compare::{
 };
 pub use detect::detect;
 pub(crate) use detect::detect_with;
-pub(crate) use facets::{Facets, Flat, NearFacet};
+pub(crate) use facets::{Facets, Flat, NearFacet, Patch};
 pub use model::{Corner, Edge, FeatureClass, FeatureKind, Features, Plane, PointFeature};
 pub use params::{FeatureError, FeatureParams, FeatureReport, FeatureSeconds, Posture};
 pub use triangulate::triangulate;

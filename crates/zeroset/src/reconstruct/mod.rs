@@ -17,6 +17,7 @@
 
 mod attributes;
 mod frame;
+mod patches;
 mod plan;
 mod quality;
 mod run;
@@ -63,6 +64,11 @@ pub enum ReconstructError {
         /// Spacing of the points.
         spacing: f64,
     },
+    /// No constraint is near the points.
+    #[error(
+        "no line or polygon of the constraints lies in the box of the points; give them in the same coordinates, which are not transformed"
+    )]
+    ConstraintsAstray,
     /// The resolution asked for needs more memory than allowed.
     #[error(
         "a resolution of {resolution} needs about {needed_gb:.1} GB, more than the {allowed_gb:.1} GB at hand; \

@@ -7,6 +7,7 @@ use super::frame::Frame;
 use super::scene::SceneEvidence;
 use super::{Quality, ReconstructError, Up};
 use crate::cloud::{Cloud, Spacing, noise};
+use crate::constraint::{ConstraintPlan, Constraints, Local};
 use crate::fit::cascade::{FitError, FitParams, PolishParams, Prepared, Scene};
 use crate::mesh::SimplifyParams;
 use crate::monitor::{Monitor, check};
@@ -95,6 +96,8 @@ pub struct ReconstructParams {
     pub simplify: Option<SimplifyParams>,
     /// Values for the vertices.
     pub attributes: AttributeChoice,
+    /// Lines and polygons that the surface is to pass through, in the world coordinates of the cloud.
+    pub constraints: Constraints,
     /// Most bytes to use; the automatic resolution keeps within it and a given one is refused beyond it.
     pub memory: u64,
 }
@@ -112,6 +115,7 @@ impl Default for ReconstructParams {
             min_component: MinComponent::default(),
             simplify: None,
             attributes: AttributeChoice::default(),
+            constraints: Constraints::default(),
             memory: 16 << 30,
         }
     }
@@ -130,6 +134,8 @@ const LEAST_TRIANGLES: usize = 100;
 const NOISE_REL: f64 = 0.25;
 /// The least and the most automatic weight of the data term.
 const SCREENING: [f64; 2] = [1.0, 16.0];
+/// The distance between samples on constraints, over the resolution.
+pub(super) const SAMPLES_REL: f64 = 0.5;
 /// Fewer points never make a surface.
 const LEAST_POINTS: usize = 8;
 /// Peak bytes of a whole run for each cell of the finest level that the surface crosses, and for each point.
@@ -185,6 +191,8 @@ pub struct PlanReport {
     pub simplify: Option<SimplifyParams>,
     /// Values for the vertices.
     pub attributes: AttributeChoice,
+    /// The user's lines and polygons; `None` without any.
+    pub constraints: Option<ConstraintPlan>,
 }
 
 /// A resolved plan, ready to run.
@@ -194,6 +202,8 @@ pub struct Plan<'a> {
     pub report: PlanReport,
     pub(super) cloud: &'a Cloud,
     pub(crate) prepared: Prepared,
+    /// The user's lines and polygons, in the frame of the fit.
+    pub(super) known: Local,
     /// Seconds spent on planning.
     pub(super) seconds: f64,
 }
@@ -241,6 +251,15 @@ pub fn plan<'a>(
         .map_or_else(|| SceneEvidence::of(&upright, spacing).verdict(), |scene| (scene, "asked for".to_owned()));
     let frame = Frame::new(params.up, scene);
     let points: Vec<[f64; 3]> = cloud.points.par_iter().map(|&p| frame.enter(p)).collect();
+    let known = Local::new(
+        &params.constraints,
+        cloud.world_from_local,
+        |p| frame.enter(p),
+        crate::domain::bounds(points.iter().copied()),
+    );
+    if known.is_empty() && !params.constraints.is_empty() {
+        return Err(ReconstructError::ConstraintsAstray);
+    }
     let screening = |resolution| params.screening.unwrap_or_else(|| screening_for(noise, resolution));
     let fit = |resolution| FitParams { screening: screening(resolution), ..FitParams::new(scene, resolution) };
     let wanted = match params.resolution {
@@ -268,14 +287,16 @@ pub fn plan<'a>(
     let mut resolution = wanted;
     let prepared = loop {
         // Before anything is sorted: the surface between the points is there however few cells hold one.
-        let least = expected_bytes(surface_cells(cloud.len(), spacing, resolution), cloud.len());
+        let placed = cloud.len().saturating_add(known.count(SAMPLES_REL * resolution));
+        let least = expected_bytes(surface_cells(cloud.len(), spacing, resolution), placed);
         let needed = if least > params.memory as f64 {
             least
         } else {
-            let prepared = Prepared::new(&points, &fit(resolution)).map_err(FitError::from)?;
+            let samples = known.samples(SAMPLES_REL * resolution);
+            let prepared = Prepared::with_samples(&points, &samples, &fit(resolution)).map_err(FitError::from)?;
             check(monitor)?;
             let cells = prepared.occupied_cells().max(surface_cells(cloud.len(), spacing, resolution));
-            let needed = expected_bytes(cells, cloud.len());
+            let needed = expected_bytes(cells, placed);
             if needed <= params.memory as f64 {
                 break prepared;
             }
@@ -313,7 +334,7 @@ pub fn plan<'a>(
         levels: prepared.levels(),
         occupied_cells,
         expected_nodes: 14 * cells as u64,
-        expected_bytes: expected_bytes(cells, cloud.len()) as u64,
+        expected_bytes: expected_bytes(cells, cloud.len() + known.count(SAMPLES_REL * resolution)) as u64,
         trim,
         screening: screening(resolution),
         quality: params.quality,
@@ -321,8 +342,9 @@ pub fn plan<'a>(
         min_component,
         simplify: params.simplify.clone(),
         attributes: params.attributes,
+        constraints: (!known.is_empty()).then_some(known.plan),
     };
-    Ok(Plan { report, cloud, prepared, seconds: start.elapsed().as_secs_f64() })
+    Ok(Plan { report, cloud, prepared, known, seconds: start.elapsed().as_secs_f64() })
 }
 
 /// Cells that the surface crosses, from the area that the points stand for.

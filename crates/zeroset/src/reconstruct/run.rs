@@ -9,9 +9,11 @@ use serde::Serialize;
 
 use super::attributes::transfer;
 use super::frame::Frame;
+use super::plan::SAMPLES_REL;
 use super::structure::{Structure, StructureReport};
 use super::{Plan, PlanReport, Quality, ReconstructError};
 use crate::cloud::Cloud;
+use crate::constraint::{ConstraintReport, Local, imprint};
 use crate::contour::{ColumnOutline, ContourReport, HalfSpace, SharpReport, clip, contour};
 use crate::fit::cascade::{self, FitReport, PolishReport, Scene};
 use crate::mesh::{DroppedComponents, Mesh, SimplifyReport, drop_small_components, simplify};
@@ -54,6 +56,8 @@ pub struct ReconstructReport {
     pub contour: ContourReport,
     /// What was made sharp; `None` in a draft.
     pub sharp: Option<SharpReport>,
+    /// How near the mesh comes to the user's lines and polygons, before it is simplified; `None` without any.
+    pub constraints: Option<ConstraintReport>,
     /// What became of small pieces.
     pub dropped: DroppedComponents,
     /// The simplification; `None` if none was asked for.
@@ -72,7 +76,7 @@ impl Plan<'_> {
     /// # Errors
     /// If no surface is found, or the monitor asks to stop.
     pub fn run(self, monitor: &dyn Monitor) -> Result<(Mesh, ReconstructReport), ReconstructError> {
-        let Self { report: plan, cloud, prepared, seconds } = self;
+        let Self { report: plan, cloud, prepared, known, seconds } = self;
         let mut seconds = StageSeconds { plan: seconds, ..StageSeconds::default() };
 
         let whole = monitor;
@@ -84,9 +88,13 @@ impl Plan<'_> {
         seconds.fit = start.elapsed().as_secs_f64();
 
         let frame = Frame::new(plan.up, plan.scene);
+        let left = known.moved(|p| frame.leave(p));
         let start = Instant::now();
         let structure = match plan.polish {
-            Some(_) => Some(Structure::find(cloud, &plan, &field, &Part::new(monitor, shares.fit..shares.structure))?),
+            Some(_) => {
+                let part = Part::new(monitor, shares.fit..shares.structure);
+                Some(Structure::find(cloud, &plan, &field, &left, &part)?)
+            }
             None => None,
         };
         seconds.structure = start.elapsed().as_secs_f64();
@@ -94,7 +102,7 @@ impl Plan<'_> {
         let (field, polish) = match (&structure, plan.polish) {
             (Some(structure), Some(params)) => {
                 monitor.stage("polishing");
-                let (field, report) = structure.polish(&field, cloud, frame, params, monitor)?;
+                let (field, report) = structure.polish(&field, cloud, &known, (frame, params), monitor)?;
                 monitor.share(shares.polish);
                 (field, Some(report))
             }
@@ -103,7 +111,7 @@ impl Plan<'_> {
         seconds.polish = start.elapsed().as_secs_f64();
         monitor.stage("extracting the surface");
         let start = Instant::now();
-        let keep = Keep::new(cloud, &plan, frame);
+        let keep = Keep::new(cloud, &plan, &known, frame);
         check(monitor)?;
         let watch = Watch::new(monitor, shares.polish..shares.contour, plan.occupied_cells);
         let (mut mesh, contour) =
@@ -125,11 +133,13 @@ impl Plan<'_> {
             monitor.stage("making edges sharp");
             structure.sharpen(&mut mesh, cloud, &plan)
         });
+        let on_lines = if sharp.is_some() { imprint(&mut mesh, &left.lines, plan.resolution) } else { 0 };
         check(monitor)?;
         monitor.share(AFTER_CONTOUR);
         seconds.sharpen = start.elapsed().as_secs_f64();
 
         let start = Instant::now();
+        let constraints = left.measure(&mesh, SAMPLES_REL * plan.resolution, on_lines);
         let dropped = plan.min_component.map(|least| drop_small_components(&mut mesh, least)).unwrap_or_default();
         let mut simplified = None;
         if let Some(params) = &plan.simplify {
@@ -155,6 +165,7 @@ impl Plan<'_> {
             polish,
             contour,
             sharp,
+            constraints,
             dropped,
             simplify,
             vertices,
@@ -241,9 +252,11 @@ enum Keep {
 }
 
 impl Keep {
-    fn new(cloud: &Cloud, plan: &PlanReport, frame: Frame) -> Option<Self> {
+    /// What is known counts like points.
+    fn new(cloud: &Cloud, plan: &PlanReport, known: &Local, frame: Frame) -> Option<Self> {
         let radius = plan.trim?;
-        let points: Vec<[f64; 3]> = cloud.points.par_iter().map(|&p| frame.enter(p)).collect();
+        let mut points: Vec<[f64; 3]> = cloud.points.par_iter().map(|&p| frame.enter(p)).collect();
+        points.extend(known.samples(plan.resolution));
         Some(match plan.scene {
             Scene::Terrain | Scene::Airborne => Self::Outline(ColumnOutline::new(&points, plan.resolution, radius)),
             Scene::Object | Scene::Free => Self::Near { tree: PointTree::new(&points), radius },

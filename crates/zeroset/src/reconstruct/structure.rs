@@ -3,16 +3,22 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
+use super::patches::{join, patches};
 use super::{Frame, PlanReport, ReconstructError};
 use crate::cloud::Cloud;
+use crate::constraint::Local;
 use crate::contour::{Known, SharpReport, sharpen};
 use crate::feature::{Facets, FeatureError, FeatureParams, detect_with};
 use crate::field::LatticeField;
-use crate::fit::cascade::{OrientedTriangle, PolishParams, PolishReport, Scene, polish};
+use crate::fit::cascade::{Held, OrientedTriangle, PolishParams, PolishReport, Scene, polish};
 use crate::mesh::Mesh;
 use crate::monitor::{Cancelled, Monitor};
 use crate::spatial::PointTree;
 use crate::vec3::Vec3;
+
+/// Points so near a plane of the user, in cells or in deviations of the noise, whichever is more, lie on it.
+const BESIDE: f64 = 0.25;
+const DEVIATIONS: f64 = 3.0;
 
 /// The planes of a surface, and which points lie on them.
 pub(super) struct Structure {
@@ -36,11 +42,12 @@ pub struct StructureReport {
 }
 
 impl Structure {
-    /// Finds planes with the fit that is there.
+    /// Finds planes with the fit that is there. `known`, in the coordinates of the cloud, adds planes of the user.
     pub(super) fn find(
         cloud: &Cloud,
         plan: &PlanReport,
         field: &LatticeField,
+        known: &Local,
         monitor: &dyn Monitor,
     ) -> Result<Self, ReconstructError> {
         let params = FeatureParams { scene: Some(plan.scene), up: plan.up, ..FeatureParams::default() };
@@ -55,18 +62,26 @@ impl Structure {
             points_on_planes: found.points_on_planes,
             plane_rms: found.plane_rms,
         };
-        let plane_of = features.points.iter().map(|point| point.plane).collect();
+        let mut plane_of: Vec<Option<u32>> = features.points.iter().map(|point| point.plane).collect();
         let curved_creases = matches!(plan.scene, Scene::Object | Scene::Free);
-        Ok(Self { facets: Facets::new(&features), plane_of, curved_creases, report })
+        let frame = Frame::new(plan.up, plan.scene);
+        let patches =
+            patches(&features, known, plan.resolution, |p| Some(frame.leave(field.gradient(frame.enter(p))?)));
+        let facets = Facets::with_patches(&features, &patches);
+        if !patches.is_empty() {
+            let reach = (DEVIATIONS * plan.noise).max(BESIDE * plan.resolution);
+            join(&mut plane_of, &facets, features.planes.len() as u32, &cloud.points, reach);
+        }
+        Ok(Self { facets, plane_of, curved_creases, report })
     }
 
-    /// Polishes F: points on planes give way to their planes.
+    /// Polishes F: points on planes give way to their planes. `known` is in the frame of the fit.
     pub(super) fn polish(
         &self,
         field: &LatticeField,
         cloud: &Cloud,
-        frame: Frame,
-        params: PolishParams,
+        known: &Local,
+        (frame, params): (Frame, PolishParams),
         monitor: &dyn Monitor,
     ) -> Result<(LatticeField, PolishReport), Cancelled> {
         let loose: Vec<Vec3> = cloud
@@ -81,7 +96,9 @@ impl Structure {
             normal: frame.enter(normal),
         };
         let facets: Vec<OrientedTriangle> = self.facets.oriented_triangles().map(turned).collect();
-        polish(field, &loose, &facets, params, monitor)
+        let (triangles, segments): (Vec<_>, Vec<_>) = (known.triangles().collect(), known.segments().collect());
+        let held = Held { facets: &facets, triangles: &triangles, segments: &segments };
+        polish(field, &loose, held, params, monitor)
     }
 
     /// Makes a mesh in the coordinates of the cloud sharp.

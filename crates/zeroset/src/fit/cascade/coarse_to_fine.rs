@@ -192,9 +192,23 @@ impl Prepared {
     /// # Errors
     /// If the lattice cannot be made.
     pub fn new(points: &[[f64; 3]], params: &FitParams) -> Result<Self, LatticeError> {
+        Self::with_samples(points, &[], params)
+    }
+
+    /// The same with further positions on which F is to vanish, within the padding of the box around the points, which is the same with
+    /// them and without.
+    pub(crate) fn with_samples(
+        points: &[[f64; 3]],
+        samples: &[[f64; 3]],
+        params: &FitParams,
+    ) -> Result<Self, LatticeError> {
         let (low, high) = bounds(points.iter().copied());
         let lattice = Lattice::around(low, high, params.resolution, params.padding_rel)?;
-        let points = LatticePoints::new(&lattice, points);
+        let points = if samples.is_empty() {
+            LatticePoints::new(&lattice, points)
+        } else {
+            LatticePoints::new(&lattice, &[points, samples].concat())
+        };
         let occupied_cells = Cells::new(&lattice, &points, lattice.finest).len();
         Ok(Self { lattice, points, params: params.clone(), occupied_cells })
     }

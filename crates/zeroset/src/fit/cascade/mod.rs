@@ -46,5 +46,5 @@ mod tests;
 
 pub(crate) use coarse_to_fine::SHARE;
 pub use coarse_to_fine::{FitError, FitParams, FitReport, Iteration, LevelReport, Prepared, Scene, fit};
-pub(crate) use polish::{OrientedTriangle, polish};
+pub(crate) use polish::{Held, OrientedTriangle, polish};
 pub use polish::{PolishParams, PolishReport};

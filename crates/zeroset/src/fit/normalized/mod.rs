@@ -60,6 +60,7 @@ mod tests;
 
 pub use crate::fit::eigen::Solver;
 pub use data::{Data, DataError, PolygonError, Sample};
+pub(crate) use data::{Triangulated, triangulate_polygon};
 pub use diagnosis::{Diagnosis, Warning};
 pub use energy::{Order0, Order1, Order2, Smoothness, Squares};
 pub use normalization::{Coefficients, MeanGradient, Minimum, Normalization, SquaredGradient};

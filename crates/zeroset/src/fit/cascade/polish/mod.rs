@@ -5,7 +5,7 @@
 //! vectors N beside it that is smooth but for creases:
 //!
 //! ```text
-//! minimise  alpha * sum_i w_i d(P_i)^2  +  alpha * integral of d^2 over the facets
+//! minimise  alpha * sum_i w_i d(P_i)^2  +  4 alpha * integral of d^2 over facets and lines
 //!           + sum_e (d_j - d_i - N_e)^2  +  lambda * sum_e rho(|N_j - N_i|)
 //! ```
 //!
@@ -21,6 +21,7 @@
 //! The splitting of an order-2 energy is that of design section 2 (polish), made solvable; half-quadratic weights after Geman and
 //! McClure 1987.
 
+mod cut;
 mod directions;
 mod pieces;
 mod start;
@@ -42,9 +43,9 @@ use crate::field::LatticeField;
 use crate::fit::Gradient;
 use crate::monitor::{Cancelled, Monitor, check};
 use directions::{Directions, smooth};
-pub(crate) use pieces::OrientedTriangle;
 pub(super) use pieces::Piece;
 use pieces::Pieces;
+pub(crate) use pieces::{Held, OrientedTriangle};
 use start::{Start, start};
 
 /// How to polish.
@@ -73,27 +74,28 @@ pub struct PolishReport {
 
 /// When the equation for d counts as solved: the root of the mean square residual, in cells.
 const SOLVE: SolveParams = SolveParams { tolerance: 1e-3, max_steps: 60 };
-/// The weight of a squared cell of a facet over that of a cell with points: facets are known better than points.
+/// The weight of a squared cell of a facet, or of a cell's length of a line, over that of a cell with points: they are known better than
+/// points.
 const FACET: f32 = 4.0;
 /// Points farther than this from the zero set, in cells, have been overruled by the cascade and stay so.
 const FARTHEST: f32 = 1.5;
 
-/// Polishes a field. `points` are those that pull at F; positions on the facets need not be among them.
+/// Polishes a field. `points` are those that pull at F; positions on what it is held to need not be among them.
 pub(crate) fn polish(
     field: &LatticeField,
     points: &[[f64; 3]],
-    facets: &[OrientedTriangle],
+    held: Held<'_>,
     params: PolishParams,
     monitor: &dyn Monitor,
 ) -> Result<(LatticeField, PolishReport), Cancelled> {
     let clock = std::time::Instant::now();
-    let Start { mut d, mut directions, known, free } = start(field, points, facets);
+    let Start { mut d, mut directions, known, free } = start(field, points, held);
     let near: Vec<[f64; 3]> = points.par_iter().copied().filter(|&p| is_near(field, &known, &d, p)).collect();
     let points = LatticePoints::new(&field.lattice, &near);
     drop(near);
     let finest = field.lattice.finest;
     let cells = Cells::new(&field.lattice, &points, finest);
-    let pieces = Pieces::new(field, facets, &directions, &d, &known);
+    let pieces = Pieces::new(field, held, &directions, &d, &known);
     let nodes = Nodes { blocks: field.blocks.clone(), known: known.clone(), free, cells, columns: None };
     let level_params = LevelParams { alpha: params.screening as f32, faces: FixedFaces::None, column_prior: false };
     let mut level = Level::new(&field.lattice, &points, finest, nodes, &level_params);

@@ -1,7 +1,8 @@
-//! Facets cut along the tetrahedra of the lattice, with the exact integral of the square of F over each piece.
+//! Facets and lines cut along the tetrahedra of the lattice, with the exact integral of the square of F over each piece.
 
 use rayon::prelude::*;
 
+use super::cut::{in_pieces, in_tetrahedra, middle, slabs};
 use super::directions::Directions;
 use crate::domain::{Mask, TETRAHEDRA, barycentric, mask_get, tetrahedron_of};
 use crate::field::LatticeField;
@@ -13,6 +14,36 @@ pub(crate) struct OrientedTriangle {
     pub(crate) corners: [Vec3; 3],
     /// Unit normal, which points outward.
     pub(crate) normal: Vec3,
+}
+
+/// What F is to vanish on beside points, in the frame of the lattice.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Held<'a> {
+    /// Facets of planes that were found.
+    pub(crate) facets: &'a [OrientedTriangle],
+    /// Triangles of which no side is known to be outside: F tells it where they lie.
+    pub(crate) triangles: &'a [[Vec3; 3]],
+    /// Lines.
+    pub(crate) segments: &'a [[Vec3; 2]],
+}
+
+impl Held<'_> {
+    /// The corners of all.
+    pub(super) fn corners(&self) -> impl Iterator<Item = Vec3> + '_ {
+        let facets = self.facets.iter().flat_map(|facet| facet.corners);
+        facets.chain(self.triangles.iter().flatten().copied()).chain(self.segments.iter().flatten().copied())
+    }
+}
+
+/// What is known of the side of a piece that is outside.
+#[derive(Debug, Clone, Copy)]
+enum Side {
+    /// The unit normal points there.
+    Outward(Vec3),
+    /// The unit normal or its opposite does.
+    Either(Vec3),
+    /// A line has no sides.
+    Line,
 }
 
 /// The matrix of one piece: the integral of F^2 over it is `b' moments b` for the values b at the corners of its tetrahedron.
@@ -43,14 +74,14 @@ impl Pins {
     }
 }
 
-/// A facet counts where F vanishes within so many cells.
+/// A facet or a line counts where F vanishes within so many cells.
 const FARTHEST: f64 = 1.7;
 /// A facet counts where it faces the way that F rises, within this cosine.
 const FACING: f64 = 0.17;
 /// The weight with which a facet tells a node its direction, for each squared cell of its area.
 const PIN: f32 = 10.0;
 
-/// The pieces of all facets, and what they ask for.
+/// The pieces of all facets and lines, and what they ask for.
 pub(super) struct Pieces {
     /// For each block those in its cells.
     pub(super) of_block: Vec<Vec<Piece>>,
@@ -63,40 +94,51 @@ struct Placed {
     piece: Piece,
     /// The integral of each corner's barycentric weight.
     weights: [f32; 4],
-    normal: Vec3,
+    /// The outward normal of a facet.
+    normal: Option<Vec3>,
 }
 
 impl Pieces {
     pub(super) fn new(
         field: &LatticeField,
-        facets: &[OrientedTriangle],
+        held: Held<'_>,
         directions: &Directions,
         d: &[f32],
         known: &[Mask],
     ) -> Self {
         let lattice = &field.lattice;
         let enter = |p: Vec3| vec3::scale(vec3::sub(p, lattice.origin), 1.0 / lattice.spacing);
-        let strips: Vec<(Vec<Vec3>, Vec3)> = facets
-            .par_iter()
-            .flat_map_iter(|facet| {
-                let normal = facet.normal;
-                slabs(facet.corners.map(enter).to_vec(), |p: &Vec3| p[0]).into_iter().map(move |slab| (slab, normal))
+        let facets = held.facets.par_iter().map(|facet| (facet.corners, Side::Outward(facet.normal)));
+        let triangles = held.triangles.par_iter().filter_map(|&corners| {
+            let [a, b, c] = corners;
+            Some((corners, Side::Either(vec3::normalized(vec3::cross(vec3::sub(b, a), vec3::sub(c, a)))?)))
+        });
+        let strips: Vec<(Vec<Vec3>, Side)> = facets
+            .chain(triangles)
+            .flat_map_iter(|(corners, side)| {
+                slabs(corners.map(enter).to_vec(), |p: &Vec3| p[0]).into_iter().map(move |slab| (slab, side))
             })
             .collect();
-        let parts: Vec<Vec<Placed>> = strips
+        let near = (field, directions, d, known);
+        let mut parts: Vec<Vec<Placed>> = strips
             .into_par_iter()
-            .map(|(slab, normal)| {
+            .map(|(slab, side)| {
                 let mut placed = Vec::new();
                 for column in slabs(slab, |p: &Vec3| p[1]) {
                     for cell in slabs(column, |p: &Vec3| p[2]) {
                         for part in in_tetrahedra(cell) {
-                            placed.extend(place(&part, normal, (field, directions, d, known)));
+                            placed.extend(place(&part, side, near));
                         }
                     }
                 }
                 placed
             })
             .collect();
+        let lines = held
+            .segments
+            .par_iter()
+            .map(|ends| in_pieces(ends.map(enter)).iter().filter_map(|part| place(part, Side::Line, near)).collect());
+        parts.par_extend(lines);
         let mut all = Self {
             of_block: vec![Vec::new(); field.blocks.len()],
             pins: Pins { of_block: (0..field.blocks.len()).map(|_| None).collect() },
@@ -105,7 +147,7 @@ impl Pieces {
             let b = block as usize;
             let corners = TETRAHEDRA[usize::from(piece.tetrahedron)].corners;
             for (corner, weight) in corners.into_iter().zip(weights) {
-                if let Some(node) = node_of(field, b, piece.local, corner) {
+                if let (Some(normal), Some(node)) = (normal, node_of(field, b, piece.local, corner)) {
                     all.pins.add(node, normal.map(|n| PIN * weight * n as f32));
                 }
             }
@@ -124,60 +166,13 @@ fn node_of(field: &LatticeField, b: usize, local: u16, corner: usize) -> Option<
     (other != crate::domain::NONE).then_some((other as usize, place))
 }
 
-/// Cuts a convex polygon where a linear function takes whole values.
-fn slabs(mut rest: Vec<Vec3>, value: impl Fn(&Vec3) -> f64) -> Vec<Vec<Vec3>> {
-    let (low, high) =
-        rest.iter().map(&value).fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
-    let mut parts = Vec::new();
-    let mut level = low.floor() + 1.0;
-    while level < high {
-        let [below, above] = cut(&rest, |p| value(p) - level);
-        parts.push(below);
-        rest = above;
-        level += 1.0;
-    }
-    parts.push(rest);
-    parts.retain(|part| part.len() > 2);
-    parts
-}
-
-/// The parts of a convex polygon where a linear function is negative, and where it is not.
-fn cut(polygon: &[Vec3], value: impl Fn(&Vec3) -> f64) -> [Vec<Vec3>; 2] {
-    let mut parts = [Vec::with_capacity(polygon.len() + 1), Vec::with_capacity(polygon.len() + 1)];
-    for (i, p) in polygon.iter().enumerate() {
-        let q = &polygon[(i + 1) % polygon.len()];
-        let (here, there) = (value(p), value(q));
-        parts[usize::from(here >= 0.0)].push(*p);
-        if (here < 0.0) != (there < 0.0) {
-            let crossing = vec3::lerp(*p, *q, here / (here - there));
-            parts.iter_mut().for_each(|part| part.push(crossing));
-        }
-    }
-    parts
-}
-
-/// Cuts a polygon that lies in one cell along the faces of the cell's tetrahedra.
-fn in_tetrahedra(polygon: Vec<Vec3>) -> Vec<Vec<Vec3>> {
-    let centre = middle(&polygon).map(f64::floor);
-    let mut parts = vec![polygon];
-    for (a, b) in [(0, 1), (0, 2), (1, 2)] {
-        let difference = |p: &Vec3| (p[a] - centre[a]) - (p[b] - centre[b]);
-        parts = parts.iter().flat_map(|part| cut(part, difference)).filter(|part| part.len() > 2).collect();
-    }
-    parts
-}
-
-fn middle(polygon: &[Vec3]) -> Vec3 {
-    vec3::scale(polygon.iter().fold([0.0; 3], |sum, p| vec3::add(sum, *p)), 1.0 / polygon.len() as f64)
-}
-
-/// The piece of a polygon within one tetrahedron; `None` where F does not follow the facet.
+/// The piece of a polygon, or of a segment, within one tetrahedron; `None` where F does not follow it.
 fn place(
-    polygon: &[Vec3],
-    normal: Vec3,
+    corners: &[Vec3],
+    side: Side,
     (field, directions, d, known): (&LatticeField, &Directions, &[f32], &[Mask]),
 ) -> Option<Placed> {
-    let centre = middle(polygon);
+    let centre = middle(corners);
     let cell = centre.map(f64::floor);
     if cell.iter().any(|c| *c < 0.0) {
         return None;
@@ -187,7 +182,7 @@ fn place(
     let node = cell.map(|c| c as u32);
     let b = field.blocks.find(node.map(|c| c / 8))?;
     let local = (node[0] & 7 | (node[1] & 7) << 3 | (node[2] & 7) << 6) as u16;
-    let (mut value, mut facing) = (0.0, 0.0);
+    let (mut value, mut direction) = (0.0, [0.0; 3]);
     for (corner, weight) in TETRAHEDRA[t].corners.into_iter().zip(barycentric(t, fractions(&centre))) {
         let (other, place) = node_of(field, b, local, corner)?;
         if !mask_get(&known[other], place) {
@@ -195,26 +190,57 @@ fn place(
         }
         let index = other * 512 + place;
         value += f64::from(weight * d[index]);
-        facing += (0..3).map(|a| f64::from(weight * directions.0[a][index]) * normal[a]).sum::<f64>();
+        (0..3).for_each(|a| direction[a] += f64::from(weight * directions.0[a][index]));
     }
-    if value.abs() > FARTHEST || facing < FACING {
+    let normal = match side {
+        Side::Outward(normal) => Some(normal),
+        Side::Either(normal) => Some(vec3::scale(normal, 1.0_f64.copysign(vec3::dot(direction, normal)))),
+        Side::Line => None,
+    };
+    if value.abs() > FARTHEST || normal.is_some_and(|normal| vec3::dot(direction, normal) < FACING) {
         return None;
     }
-    let mut moments = [[0.0_f32; 4]; 4];
-    let mut weights = [0.0_f32; 4];
-    let first = barycentric(t, fractions(&polygon[0]));
-    for pair in polygon[1..].windows(2) {
-        let area = 0.5 * vec3::norm(vec3::cross(vec3::sub(pair[0], polygon[0]), vec3::sub(pair[1], polygon[0]))) as f32;
-        let values = [first, barycentric(t, fractions(&pair[0])), barycentric(t, fractions(&pair[1]))];
+    let at = |p: &Vec3| barycentric(t, fractions(p));
+    let mut integrals = Integrals::default();
+    if let [from, to] = corners {
+        integrals.segment([at(from), at(to)], vec3::distance(*from, *to) as f32);
+    } else {
+        for pair in corners[1..].windows(2) {
+            let spanned = vec3::cross(vec3::sub(pair[0], corners[0]), vec3::sub(pair[1], corners[0]));
+            integrals.triangle([at(&corners[0]), at(&pair[0]), at(&pair[1])], 0.5 * vec3::norm(spanned) as f32);
+        }
+    }
+    let Integrals { weights, moments } = integrals;
+    Some(Placed { block: b as u32, piece: Piece { local, tetrahedron: t as u8, moments }, weights, normal })
+}
+
+/// Integrals of the barycentric weights and of their products, which are exact.
+#[derive(Default)]
+struct Integrals {
+    weights: [f32; 4],
+    moments: [[f32; 4]; 4],
+}
+
+impl Integrals {
+    fn triangle(&mut self, values: [[f32; 4]; 3], area: f32) {
         let sum: [f32; 4] = std::array::from_fn(|k| values.iter().map(|v| v[k]).sum());
         for i in 0..4 {
-            weights[i] += area / 3.0 * sum[i];
+            self.weights[i] += area / 3.0 * sum[i];
             for j in 0..4 {
-                // The integral of a product of two linear functions over a triangle.
                 let products: f32 = values.iter().map(|v| v[i] * v[j]).sum();
-                moments[i][j] += area / 12.0 * (products + sum[i] * sum[j]);
+                self.moments[i][j] += area / 12.0 * (products + sum[i] * sum[j]);
             }
         }
     }
-    Some(Placed { block: b as u32, piece: Piece { local, tetrahedron: t as u8, moments }, weights, normal })
+
+    /// Simpson's rule.
+    fn segment(&mut self, [from, to]: [[f32; 4]; 2], length: f32) {
+        for i in 0..4 {
+            self.weights[i] += length / 2.0 * (from[i] + to[i]);
+            for j in 0..4 {
+                let middle = (from[i] + to[i]) * (from[j] + to[j]);
+                self.moments[i][j] += length / 6.0 * (from[i] * from[j] + middle + to[i] * to[j]);
+            }
+        }
+    }
 }

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::directions::Directions;
-use super::pieces::OrientedTriangle;
+use super::pieces::Held;
 use crate::domain::{Mask, bounds, gather, halo_index, mask_get, mask_set};
 use crate::field::LatticeField;
 use crate::vec3::Vec3;
@@ -31,9 +31,9 @@ pub(super) struct Start {
 const NEIGHBOURS: [(isize, usize, f32); 6] =
     [(-1, 0, -1.0), (1, 0, 1.0), (-16, 1, -1.0), (16, 1, 1.0), (-192, 2, -1.0), (192, 2, 1.0)];
 
-pub(super) fn start(field: &LatticeField, points: &[Vec3], facets: &[OrientedTriangle]) -> Start {
+pub(super) fn start(field: &LatticeField, points: &[Vec3], held: Held<'_>) -> Start {
     let blocks = &field.blocks;
-    let reached = reached(field, points, facets);
+    let reached = reached(field, points, held);
     let mut f = field.values.clone();
     f.par_chunks_exact_mut(512).enumerate().for_each(|(b, f)| {
         for (local, f) in f.iter_mut().enumerate() {
@@ -139,9 +139,8 @@ pub(super) fn start(field: &LatticeField, points: &[Vec3], facets: &[OrientedTri
 
 /// The blocks within the box of all data and a little beyond: around open ground the zero set goes on to the faces of the domain, where nobody
 /// looks at it.
-fn reached(field: &LatticeField, points: &[Vec3], facets: &[OrientedTriangle]) -> Vec<bool> {
-    let corners = facets.iter().flat_map(|facet| facet.corners);
-    let (low, high) = bounds(points.iter().copied().chain(corners));
+fn reached(field: &LatticeField, points: &[Vec3], held: Held<'_>) -> Vec<bool> {
+    let (low, high) = bounds(points.iter().copied().chain(held.corners()));
     let lattice = &field.lattice;
     let in_cells = |p: f64, a: usize| (p - lattice.origin[a]) / lattice.spacing;
     let inside = |c: &[u32; 3]| {

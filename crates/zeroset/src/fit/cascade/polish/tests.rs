@@ -2,13 +2,17 @@
 
 use super::pieces::Pieces;
 use super::start::start;
-use super::{OrientedTriangle, PolishParams, polish};
+use super::{Held, OrientedTriangle, PolishParams, polish};
 use crate::domain::{Blocks, Lattice, TETRAHEDRA};
 use crate::field::LatticeField;
 use crate::sample::Chance;
 use crate::vec3::{self, Vec3};
 
 const PARAMS: PolishParams = PolishParams { screening: 2.0, smoothness: 3.0, rounds: 3 };
+
+fn held(facets: &[OrientedTriangle]) -> Held<'_> {
+    Held { facets, ..Held::default() }
+}
 
 /// F at every node of a lattice with `cells` cells over the cube -1..1.
 fn field_of(cells: f64, f: impl Fn(Vec3) -> f64) -> LatticeField {
@@ -41,7 +45,7 @@ fn on_sphere(n: usize, noise: f64) -> Vec<Vec3> {
 fn a_blurred_step_becomes_a_distance() {
     let cell = 2.0 / 40.0;
     let points = on_sphere(6000, 0.2 * cell);
-    let (field, report) = polish(&field_of(40.0, rippled), &points, &[], PARAMS, &()).unwrap();
+    let (field, report) = polish(&field_of(40.0, rippled), &points, Held::default(), PARAMS, &()).unwrap();
     // What design section 2 asks for: |grad F| = 1 within a tenth at the data.
     let [low, middle, high] = report.gradient_quantiles;
     assert!(low > 0.9 && high < 1.1, "{low} {middle} {high}");
@@ -62,7 +66,7 @@ fn a_blurred_step_becomes_a_distance() {
 fn the_solver_takes_as_many_steps_at_every_size() {
     let steps = |cells: f64| {
         let points = on_sphere((6000.0 * (cells / 40.0).powi(2)) as usize, 0.2 * 2.0 / cells);
-        let (_, report) = polish(&field_of(cells, rippled), &points, &[], PARAMS, &()).unwrap();
+        let (_, report) = polish(&field_of(cells, rippled), &points, Held::default(), PARAMS, &()).unwrap();
         (report.free_nodes, *report.solver_steps.iter().max().unwrap())
     };
     let (small, large) = (steps(24.0), steps(96.0));
@@ -88,7 +92,7 @@ fn facets_hold_f_to_their_planes_into_the_corner() {
     );
     let side =
         quadrangle([[wall, -0.9, -0.9], [wall, 0.9, -0.9], [wall, 0.9, ground], [wall, -0.9, ground]], [1.0, 0.0, 0.0]);
-    let (field, _) = polish(&field_of(30.0, f), &[], &[top, side].concat(), PARAMS, &()).unwrap();
+    let (field, _) = polish(&field_of(30.0, f), &[], held(&[top, side].concat()), PARAMS, &()).unwrap();
     // Nodes beside the edge are off by up to (sqrt 2 - 1) cells before, and by half of that after.
     let exact = |p: Vec3| (p[0] - wall).max(p[2] - ground);
     let (mut before, mut after) = (0.0_f64, 0.0_f64);
@@ -114,13 +118,13 @@ fn pieces_integrate_squares_exactly() {
     let normal = vec3::normalized(vec3::cross(vec3::sub(corners[1], corners[0]), vec3::sub(corners[2], corners[0])));
     let facet = OrientedTriangle { corners, normal: normal.unwrap() };
     // Everything counts as near: a start in which F vanishes everywhere and points along the facet.
-    let mut begin = start(&field, &[], &[facet]);
+    let mut begin = start(&field, &[], held(&[facet]));
     begin.d.fill(0.0);
     for (component, n) in begin.directions.0.iter_mut().zip(facet.normal) {
         component.fill(n as f32);
     }
     let known = vec![[u64::MAX; 8]; field.blocks.len()];
-    let pieces = Pieces::new(&field, &[facet], &begin.directions, &begin.d, &known);
+    let pieces = Pieces::new(&field, held(&[facet]), &begin.directions, &begin.d, &known);
     let mut sum = 0.0;
     for (b, of_block) in pieces.of_block.iter().enumerate() {
         for piece in of_block {

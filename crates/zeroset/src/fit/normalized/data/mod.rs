@@ -7,6 +7,7 @@
 mod polygon;
 
 pub use polygon::PolygonError;
+pub(crate) use polygon::{Triangulated, triangulate_polygon};
 
 use crate::basis::Basis;
 use crate::basis::quadrature::rule;

@@ -41,15 +41,16 @@ pub(super) fn open_ring<const D: usize>(ring: &[[f64; D]]) -> Result<Vec<[f64; D
     if open.len() < 3 { Err(PolygonError::TooFewPositions(open.len())) } else { Ok(open) }
 }
 
-/// The frame of a plane polygon: its middle, its size, and two directions in it.
+/// The frame of a plane polygon: its middle, its size, its unit normal, and two directions in it.
 struct Plane {
     middle: [f64; 3],
     size: f64,
+    normal: [f64; 3],
     axes: [[f64; 3]; 2],
 }
 
 impl Plane {
-    fn of(rings: &[Vec<[f64; 3]>]) -> Result<Self, PolygonError> {
+    fn of(rings: &[Vec<[f64; 3]>], plane_rel: f64) -> Result<Self, PolygonError> {
         let positions = || rings.iter().flatten();
         let count = positions().count() as f64;
         let middle = scale(positions().fold([0.0; 3], |sum, &p| add(sum, p)), 1.0 / count);
@@ -69,7 +70,7 @@ impl Plane {
         let normal = [area, spanned].into_iter().find(|&v| norm(v) > 1e-12 * size * size).and_then(normalized);
         let normal = normal.ok_or(PolygonError::NoArea)?;
         let distance = positions().map(|&p| dot(sub(p, middle), normal).abs()).fold(0.0, f64::max);
-        if distance > PLANE * size {
+        if distance > plane_rel * size {
             return Err(PolygonError::NotPlane { distance, size });
         }
         // The axis that the normal points along least gives the longest projection.
@@ -77,7 +78,7 @@ impl Plane {
         let mut along = [0.0; 3];
         along[least] = 1.0;
         let first = normalized(cross(normal, along)).ok_or(PolygonError::NoArea)?;
-        Ok(Self { middle, size, axes: [first, cross(normal, first)] })
+        Ok(Self { middle, size, normal, axes: [first, cross(normal, first)] })
     }
 
     /// Coordinates in the plane, in sizes of the polygon.
@@ -88,13 +89,25 @@ impl Plane {
     }
 }
 
+/// A plane polygon as triangles.
+pub(crate) struct Triangulated {
+    pub(crate) triangles: Vec<[[f64; 3]; 3]>,
+    /// Of unit length, on either side.
+    pub(crate) normal: [f64; 3],
+}
+
 /// Cuts a plane polygon, its outer ring first, into triangles with corners at its positions.
 pub(super) fn triangulate(rings: &[Vec<[f64; 3]>]) -> Result<Vec<[[f64; 3]; 3]>, PolygonError> {
+    Ok(triangulate_polygon(rings, PLANE)?.triangles)
+}
+
+/// The same for a polygon that is plane to a share of its size, with a unit normal.
+pub(crate) fn triangulate_polygon(rings: &[Vec<[f64; 3]>], plane_rel: f64) -> Result<Triangulated, PolygonError> {
     let rings: Vec<Vec<[f64; 3]>> = rings.iter().map(|ring| open_ring(ring)).collect::<Result<_, _>>()?;
     if rings.is_empty() {
         return Err(PolygonError::TooFewPositions(0));
     }
-    let plane = Plane::of(&rings)?;
+    let plane = Plane::of(&rings, plane_rel)?;
     let flat: Vec<Vec<[f64; 2]>> = rings.iter().map(|ring| ring.iter().map(|&p| plane.project(p)).collect()).collect();
     let mut mesh = ConstrainedDelaunayTriangulation::<Point2<f64>>::new();
     // The position in space of each vertex of the triangulation; positions that coincide share one.
@@ -130,7 +143,7 @@ pub(super) fn triangulate(rings: &[Vec<[f64; 3]>]) -> Result<Vec<[[f64; 3]; 3]>,
         })
         .map(|face| face.vertices().map(|v| spatial[v.fix().index()]))
         .collect();
-    if triangles.is_empty() { Err(PolygonError::NoArea) } else { Ok(triangles) }
+    if triangles.is_empty() { Err(PolygonError::NoArea) } else { Ok(Triangulated { triangles, normal: plane.normal }) }
 }
 
 /// Whether a position lies within an odd number of rings: a ray to the right crosses their sides an odd number of times.
