@@ -172,6 +172,71 @@ fn solids_are_found_whole() {
     }
 }
 
+/// The ground with houses on it that have hipped roofs, each turned by another angle, and the middle and outward normal of each hip.
+fn hipped_houses() -> (Mesh, Vec<([f64; 3], [f64; 3])>) {
+    // Half the length and width of a house, the height of its eaves and its ridge; at 45 degrees the ridge is shorter by one width.
+    let (long, wide, eaves, ridge) = (0.05, 0.02, 0.03, 0.05);
+    let ground = vec![[0.0, 0.0, 0.0], [0.6, 0.0, 0.0], [0.6, 0.4, 0.0], [0.0, 0.4, 0.0]];
+    let mut mesh = Mesh { vertices: ground, triangles: vec![[0, 1, 2], [0, 2, 3]], ..Mesh::default() };
+    let mut hips = Vec::new();
+    for house in 0..6 {
+        let (s, c) = (0.4 * f64::from(house)).sin_cos();
+        let centre = [0.1 + 0.2 * f64::from(house % 3), 0.1 + 0.2 * f64::from(house / 3)];
+        let turn = |[x, y, z]: [f64; 3]| [c * x - s * y, s * x + c * y, z];
+        let place = |p: [f64; 3]| {
+            let [x, y, z] = turn(p);
+            [centre[0] + x, centre[1] + y, z]
+        };
+        let first = mesh.vertices.len() as u32;
+        let corners = [[-long, -wide], [long, -wide], [long, wide], [-long, wide]];
+        mesh.vertices.extend([0.0, eaves].iter().flat_map(|&z| corners.map(|[x, y]| place([x, y, z]))));
+        mesh.vertices.extend([wide - long, long - wide].map(|x| place([x, 0.0, ridge])));
+        let walls = (0..4).flat_map(|i| {
+            let j = (i + 1) % 4;
+            [[i, j, 4 + j], [i, 4 + j, 4 + i]]
+        });
+        let roof = [[4, 5, 9], [4, 9, 8], [5, 6, 9], [6, 7, 8], [6, 8, 9], [7, 4, 8]];
+        mesh.triangles.extend(walls.chain(roof).map(|t| t.map(|v| first + v)));
+        for side in [-1.0, 1.0] {
+            let middle = place([side * (long - wide / 3.0), 0.0, eaves + (ridge - eaves) / 3.0]);
+            hips.push((middle, turn([side * 0.5_f64.sqrt(), 0.0, 0.5_f64.sqrt()])));
+        }
+    }
+    (mesh, hips)
+}
+
+#[test]
+fn hips_of_thirty_points_are_found() {
+    let (mesh, hips) = hipped_houses();
+    let area = 0.02 * 0.02 * 2.0_f64.sqrt();
+    let count = 17_000;
+    let sampled = sample_surface(&mesh, count, 1).expect("a surface").points;
+    let total: f64 = mesh.triangles.iter().map(|t| triangle_area(t.map(|v| mesh.vertices[v as usize]))).sum();
+    let points_on_hip = count as f64 * area / total;
+    assert!((28.0..33.0).contains(&points_on_hip), "{points_on_hip}");
+    let moved = |(p, n): (&[f64; 3], [f64; 3])| std::array::from_fn(|a| p[a] + n[a]);
+    let points = sampled.iter().zip(noise(sampled.len(), 0.001)).map(moved).collect();
+    let (features, _) = found(&Cloud { points, ..Cloud::default() }, &FeatureParams::default());
+    let is_found = |(middle, normal): &([f64; 3], [f64; 3])| {
+        features.planes.iter().any(|plane| {
+            let near = |p: &[f64; 3]| (0..3).map(|a| (p[a] - middle[a]).powi(2)).sum::<f64>() < 0.03 * 0.03;
+            // Least squares through 30 points tell the direction to 2.5 degrees.
+            dot(plane.normal, *normal) > 10.0_f64.to_radians().cos()
+                && (dot(plane.normal, *middle) - plane.offset).abs() < 0.001
+                && plane.rings[0].iter().all(near)
+        })
+    };
+    let found = hips.iter().filter(|hip| is_found(hip)).count();
+    assert!(found >= 11, "{found} of {}", hips.len());
+    // Ground, and for each house four walls and four roofs; a strip along an eave may pass for a plane.
+    assert!(features.planes.len() <= 1 + 6 * 8 + 1, "{} planes", features.planes.len());
+}
+
+fn triangle_area([a, b, c]: [[f64; 3]; 3]) -> f64 {
+    let [u, v]: [[f64; 3]; 2] = [b, c].map(|p| std::array::from_fn(|k| p[k] - a[k]));
+    0.5 * (dot(u, u) * dot(v, v) - dot(u, v).powi(2)).sqrt()
+}
+
 /// Where a truth of the shared data lies, scaled to a diagonal of 1; `None` where the data are absent.
 fn shared(name: &str) -> Option<PathBuf> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data").join(name);

@@ -1,6 +1,7 @@
 //! All planes of a cloud: those that the points bear, and the walls under the rims of roofs.
 
 pub(in crate::feature) mod flatness;
+mod hidden;
 mod leftovers;
 pub(in crate::feature) mod outline;
 pub(in crate::feature) mod polygons;
@@ -13,7 +14,7 @@ use rayon::prelude::*;
 use self::flatness::{dense_regions, flat_regions, members};
 use self::leftovers::recover;
 use self::polygons::has_outline;
-use self::regions::{LEAST_POINTS, NONE, Partition, Region};
+use self::regions::{NONE, Partition, Region};
 use self::walls::{Roofs, Wall, walls};
 use crate::feature::params::FeatureError;
 use crate::feature::prepare::{Fitted, Resolved};
@@ -88,6 +89,8 @@ impl Flats {
 const ROUNDS: usize = 5;
 /// The round before which the points left over are looked at.
 const RECOVERY: usize = 2;
+/// The rounds before which hidden planes are looked for. A second time finds those beside the first.
+const HIDDEN: std::ops::RangeInclusive<usize> = 1..=2;
 
 /// Fills the partition; returns the spacing of the points of each region.
 fn find_regions(
@@ -101,8 +104,11 @@ fn find_regions(
         if round == RECOVERY {
             recover(partition);
         }
+        if HIDDEN.contains(&round) {
+            partition.add_hidden();
+        }
         partition.settle();
-        let keep: Vec<bool> = partition.regions.iter().map(|r| r.count >= LEAST_POINTS).collect();
+        let keep: Vec<bool> = partition.regions.iter().map(|r| r.is_borne_out(r.count)).collect();
         partition.retain(&keep);
         check(monitor)?;
     }
@@ -129,7 +135,7 @@ fn find_regions(
             let is_large = region.count as f64 * spacing * spacing >= resolved.min_area;
             let points = || -> Vec<Vec3> { members.iter().map(|&i| partition.points[i as usize]).collect() };
             // What has no outline is no face.
-            is_large && members.len() >= LEAST_POINTS && has_outline(&region.flat(), &points(), spacing)
+            is_large && region.is_borne_out(members.len()) && has_outline(&region.flat(), &points(), spacing)
         })
         .collect();
     partition.retain(&keep);

@@ -15,6 +15,10 @@
 //! lost. Measured on a city with faces of 50 points and more: mean error of the angle 0.64 degrees with each point wholly on one plane
 //! (points near two planes left out), 0.50 with these weights, 0.40 if it were known which face each point lies on.
 //!
+//! *Evidence* for a plane is the logarithm of the likelihood of the points with it over that without it, summed over the points: with the
+//! densities exp(-d^2 / 2 sigma^2) and a constant for strays, it is 6 for a point that no other plane explains, and nothing for one that another
+//! explains as well.
+//!
 //! # Source
 //! The labels: Isack and Boykov, "Energy-based geometric multi-model fitting", 2012. The weights: Dempster, Laird and Rubin 1977.
 
@@ -30,7 +34,7 @@ const COHESION: f64 = 6.0;
 /// Regions that are tried for a point.
 const CANDIDATES: usize = 8;
 /// The density of strays: that of a point at so many deviations from a plane.
-const STRAY: f64 = 3.5;
+pub(super) const STRAY: f64 = 3.5;
 /// Points beyond so many deviations from a plane have no weight for it.
 const FARTHEST: f64 = 4.0;
 /// Weights below this are left out.
@@ -107,25 +111,58 @@ impl Partition<'_> {
         best.1
     }
 
-    /// Fits every region to the points near it, by their weights.
+    /// What each point costs the best of the regions around it: half its squared distance in deviations, at most that of a stray.
+    pub(super) fn costs(&self) -> Vec<f64> {
+        let least = |i: usize| {
+            let around = Candidates::around(self, i);
+            let costs = around.list().iter().map(|c| self.cost(&self.regions[c.0 as usize], i));
+            costs.fold(0.5 * STRAY * STRAY, f64::min)
+        };
+        (0..self.points.len()).into_par_iter().map(least).collect()
+    }
+
+    /// What a point costs a region: half its squared distance in deviations.
+    #[inline]
+    pub(super) fn cost(&self, region: &Region, i: usize) -> f64 {
+        0.5 * (region.distance(self.points[i]) / self.limits.noise).powi(2)
+    }
+
+    /// Fits every region to the points near it, by their weights, and sums up the evidence for it.
     fn refit(&mut self) {
         let sides = self.sides();
-        let parts: Vec<Vec<(u32, Moments)>> = self.by_parts(|i, sums: &mut Vec<(u32, Moments)>| {
+        let parts: Vec<Vec<(u32, (Moments, f64))>> = self.by_parts(|i, sums: &mut Vec<(u32, (Moments, f64))>| {
             let mut around = Candidates::around(self, i);
+            self.for_evidence(i, &around, |label, evidence| place(sums, label).1 += evidence);
             self.weigh(i, &sides, &mut around);
             for &(label, weight) in around.list().iter().filter(|c| c.1 >= LEAST_WEIGHT) {
-                place(sums, label).add_weighted(self.points[i], weight);
+                place(sums, label).0.add_weighted(self.points[i], weight);
             }
         });
-        let mut all = vec![Moments::default(); self.regions.len()];
-        for (label, sum) in parts.into_iter().flatten() {
-            all[label as usize].merge(&sum);
+        let mut all = vec![(Moments::default(), 0.0); self.regions.len()];
+        for (label, (moments, evidence)) in parts.into_iter().flatten() {
+            let sums = &mut all[label as usize];
+            sums.0.merge(&moments);
+            sums.1 += evidence;
         }
-        for (region, moments) in self.regions.iter_mut().zip(all) {
-            region.count = moments.count as usize;
+        for (region, (moments, evidence)) in self.regions.iter_mut().zip(all) {
+            let count = moments.count as usize;
             if let Some(fit) = self.limits.best_fit(&moments) {
-                *region = Region::from_fit(&fit, region.count);
+                *region = Region::from_fit(&fit, count);
             }
+            (region.count, region.evidence) = (count, evidence);
+        }
+    }
+
+    /// Tells what each of the regions around a point is worth to it.
+    fn for_evidence(&self, i: usize, around: &Candidates, mut tell: impl FnMut(u32, f64)) {
+        let mut densities = [0.0; CANDIDATES];
+        for (density, (label, _)) in densities.iter_mut().zip(around.list()) {
+            *density = (-self.cost(&self.regions[*label as usize], i)).exp();
+        }
+        let stray = (-0.5 * STRAY * STRAY).exp();
+        for (a, (label, _)) in around.list().iter().enumerate() {
+            let others: f64 = (0..around.known).filter(|&b| b != a).map(|b| densities[b]).sum();
+            tell(*label, (densities[a] / (stray + others)).ln_1p());
         }
     }
 
