@@ -172,8 +172,14 @@ fn solids_are_found_whole() {
     }
 }
 
-/// The ground with houses on it that have hipped roofs, each turned by another angle, and the middle and outward normal of each hip.
-fn hipped_houses() -> (Mesh, Vec<([f64; 3], [f64; 3])>) {
+struct Hip {
+    middle: [f64; 3],
+    /// Outward.
+    normal: [f64; 3],
+}
+
+/// The ground with houses on it that have hipped roofs, each turned by another angle, and their hips.
+fn hipped_houses() -> (Mesh, Vec<Hip>) {
     // Half the length and width of a house, the height of its eaves and its ridge; at 45 degrees the ridge is shorter by one width.
     let (long, wide, eaves, ridge) = (0.05, 0.02, 0.03, 0.05);
     let ground = vec![[0.0, 0.0, 0.0], [0.6, 0.0, 0.0], [0.6, 0.4, 0.0], [0.0, 0.4, 0.0]];
@@ -199,7 +205,8 @@ fn hipped_houses() -> (Mesh, Vec<([f64; 3], [f64; 3])>) {
         mesh.triangles.extend(walls.chain(roof).map(|t| t.map(|v| first + v)));
         for side in [-1.0, 1.0] {
             let middle = place([side * (long - wide / 3.0), 0.0, eaves + (ridge - eaves) / 3.0]);
-            hips.push((middle, turn([side * 0.5_f64.sqrt(), 0.0, 0.5_f64.sqrt()])));
+            let normal = turn([side * 0.5_f64.sqrt(), 0.0, 0.5_f64.sqrt()]);
+            hips.push(Hip { middle, normal });
         }
     }
     (mesh, hips)
@@ -217,7 +224,7 @@ fn hips_of_thirty_points_are_found() {
     let moved = |(p, n): (&[f64; 3], [f64; 3])| std::array::from_fn(|a| p[a] + n[a]);
     let points = sampled.iter().zip(noise(sampled.len(), 0.001)).map(moved).collect();
     let (features, _) = found(&Cloud { points, ..Cloud::default() }, &FeatureParams::default());
-    let is_found = |(middle, normal): &([f64; 3], [f64; 3])| {
+    let is_found = |Hip { middle, normal }: &Hip| {
         features.planes.iter().any(|plane| {
             let near = |p: &[f64; 3]| (0..3).map(|a| (p[a] - middle[a]).powi(2)).sum::<f64>() < 0.03 * 0.03;
             // Least squares through 30 points tell the direction to 2.5 degrees.
@@ -228,7 +235,7 @@ fn hips_of_thirty_points_are_found() {
     };
     let found = hips.iter().filter(|hip| is_found(hip)).count();
     assert!(found >= 11, "{found} of {}", hips.len());
-    // Ground, and for each house four walls and four roofs; a strip along an eave may pass for a plane.
+    // Ground, and for each house four walls and four roofs; one face may come in two.
     assert!(features.planes.len() <= 1 + 6 * 8 + 1, "{} planes", features.planes.len());
 }
 

@@ -14,7 +14,8 @@
 //! Proportional to the number of places that are explained badly.
 //!
 //! # Not guaranteed
-//! What lies among strays is passed over as clutter: a small plane under a tree is not found.
+//! What lies among strays is passed over as clutter: a small plane under a tree is not found. Nor is any looked for where the noise is over 0.3 of the
+//! spacing.
 //!
 //! # Source
 //! Planes through three points: Fischler and Bolles 1981. Gains against the other models, not counts of points: Isack and Boykov, "Energy-based
@@ -33,7 +34,7 @@ use crate::vec3::{self, Vec3};
 const SUSPICIOUS: f64 = 20.0;
 /// Points that are looked at around a place.
 const WINDOW: usize = 64;
-/// The largest share of them that belongs to no plane.
+/// The largest share of the points around that belongs to no plane.
 const CLUTTER: f64 = 0.15;
 /// A point that costs more is explained badly; one in ten is by chance.
 const BADLY: f64 = 1.35;

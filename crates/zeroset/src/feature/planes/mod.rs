@@ -89,7 +89,8 @@ impl Flats {
 const ROUNDS: usize = 5;
 /// The round before which the points left over are looked at.
 const RECOVERY: usize = 2;
-/// The rounds before which hidden planes are looked for. A second time finds those beside the first.
+/// The rounds before which hidden planes are looked for, unless noise makes the grain coarser than the spacing: so few points then tell no plane
+/// from a round strip. The second time finds those beside the first.
 const HIDDEN: std::ops::RangeInclusive<usize> = 1..=2;
 
 /// Fills the partition; returns the spacing of the points of each region.
@@ -104,7 +105,7 @@ fn find_regions(
         if round == RECOVERY {
             recover(partition);
         }
-        if HIDDEN.contains(&round) {
+        if HIDDEN.contains(&round) && resolved.grain <= resolved.spacing {
             partition.add_hidden();
         }
         partition.settle();
