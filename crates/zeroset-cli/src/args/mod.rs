@@ -127,7 +127,7 @@ pub struct ReconstructArgs {
     #[command(flatten)]
     pub scene: SceneArgs,
     /// How much is done for the surface: draft (the zero set as fitted), normal (planes are found, F is polished, edges made
-    /// sharp) or fine (the same on finer cells) [default: draft].
+    /// sharp) or fine (the same on finer cells) [default: normal].
     #[arg(long, value_name = "WHICH", hide_possible_values = true)]
     pub quality: Option<QualityChoice>,
     /// Weight of smoothness in the polish, without unit, or `auto` [default: auto].

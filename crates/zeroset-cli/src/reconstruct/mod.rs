@@ -84,8 +84,8 @@ fn params(args: &ReconstructArgs, formats: &[CloudFormat]) -> ReconstructParams 
             (None, None) => Resolution::Auto,
         },
         quality: match args.quality {
-            Some(QualityChoice::Draft) | None => Quality::Draft,
-            Some(QualityChoice::Normal) => Quality::Normal,
+            Some(QualityChoice::Draft) => Quality::Draft,
+            Some(QualityChoice::Normal) | None => Quality::Normal,
             Some(QualityChoice::Fine) => Quality::Fine,
         },
         screening: args.screening,

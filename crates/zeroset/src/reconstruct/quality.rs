@@ -8,10 +8,10 @@ use crate::fit::cascade::PolishParams;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Quality {
-    /// Nothing: the zero set of the cascade. The fastest look, and the default for now.
-    #[default]
+    /// Nothing: the zero set of the cascade. The fastest look.
     Draft,
     /// Planes are found, F is polished, and the mesh is made sharp at edges and corners.
+    #[default]
     Normal,
     /// The same on cells two thirds as wide, with more rounds of polish: for few or precious points.
     Fine,
