@@ -138,12 +138,14 @@ const SCREENING: [f64; 2] = [1.0, 16.0];
 pub(super) const SAMPLES_REL: f64 = 0.5;
 /// Fewer points never make a surface.
 const LEAST_POINTS: usize = 8;
-/// Peak bytes of a whole run for each cell of the finest level that the surface crosses, and for each point.
+/// Peak bytes of a whole run for each cell of the finest level that the surface crosses, in a draft and else, and for each point.
 ///
 /// Measured is the peak resident set of `zeroset reconstruct` on two threads. The points alone (3 M, cells of 5 spacings) take
-/// 102 bytes each, with the few cells that they then fill. Cells beyond that take 550 (torus), 700 (city) and 745 bytes
-/// (airborne city, 1 M points); much noise fills more cells than there is surface, and each takes less.
-const BYTES_A_CELL: f64 = 750.0;
+/// 102 bytes each, with the few cells that they then fill. In a draft cells beyond that take 550 (torus), 700 (city) and 745 bytes
+/// (airborne city, 1 M points); much noise fills more cells than there is surface, and each takes less. With polish and sharp
+/// edges they take 2,400 to 3,200 (bodies), 4,900 (Delft), 5,400 (city) and 6,700 bytes (airborne city).
+const BYTES_A_DRAFT_CELL: f64 = 750.0;
+const BYTES_A_CELL: f64 = 6700.0;
 const BYTES_A_POINT: f64 = 110.0;
 /// A box wider than this many spacings holds stray points: 10^9 points would not fill its diagonal plane.
 const ASTRAY: f64 = 1e6;
@@ -288,7 +290,7 @@ pub fn plan<'a>(
     let prepared = loop {
         // Before anything is sorted: the surface between the points is there however few cells hold one.
         let placed = cloud.len().saturating_add(known.count(SAMPLES_REL * resolution));
-        let least = expected_bytes(surface_cells(cloud.len(), spacing, resolution), placed);
+        let least = expected_bytes(params.quality, surface_cells(cloud.len(), spacing, resolution), placed);
         let needed = if least > params.memory as f64 {
             least
         } else {
@@ -296,7 +298,7 @@ pub fn plan<'a>(
             let prepared = Prepared::with_samples(&points, &samples, &fit(resolution)).map_err(FitError::from)?;
             check(monitor)?;
             let cells = prepared.occupied_cells().max(surface_cells(cloud.len(), spacing, resolution));
-            let needed = expected_bytes(cells, placed);
+            let needed = expected_bytes(params.quality, cells, placed);
             if needed <= params.memory as f64 {
                 break prepared;
             }
@@ -334,7 +336,8 @@ pub fn plan<'a>(
         levels: prepared.levels(),
         occupied_cells,
         expected_nodes: 14 * cells as u64,
-        expected_bytes: expected_bytes(cells, cloud.len() + known.count(SAMPLES_REL * resolution)) as u64,
+        expected_bytes: expected_bytes(params.quality, cells, cloud.len() + known.count(SAMPLES_REL * resolution))
+            as u64,
         trim,
         screening: screening(resolution),
         quality: params.quality,
@@ -352,8 +355,9 @@ fn surface_cells(points: usize, spacing: f64, resolution: f64) -> usize {
     (1.5 * points as f64 * (spacing / resolution).powi(2)).min(1e15) as usize
 }
 
-fn expected_bytes(cells: usize, points: usize) -> f64 {
-    BYTES_A_CELL * cells as f64 + BYTES_A_POINT * points as f64
+fn expected_bytes(quality: Quality, cells: usize, points: usize) -> f64 {
+    let a_cell = if quality == Quality::Draft { BYTES_A_DRAFT_CELL } else { BYTES_A_CELL };
+    a_cell * cells as f64 + BYTES_A_POINT * points as f64
 }
 
 /// The weight of the data term for points whose noise is this, on cells of this size.

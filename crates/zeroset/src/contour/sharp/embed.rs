@@ -10,7 +10,7 @@ use crate::spatial::TriangleTree;
 use crate::vec3::{self, Vec3};
 
 /// Triangles with an inserted vertex, or one that moved farther than this, in cells, are looked at.
-const MOVED: f64 = 0.2;
+const MOVED: f64 = 0.35;
 /// Rings of triangles around these that are, too.
 const RINGS: usize = 2;
 /// Rounds of taking back.
