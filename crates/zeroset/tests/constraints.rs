@@ -61,7 +61,8 @@ fn an_edge_without_points_comes_back() {
     let cases = [
         (Quality::Draft, true, false, [0.15, 0.5]),
         (Quality::Draft, true, true, [0.35, 0.6]),
-        (Quality::Normal, true, false, [0.03, 0.3]),
+        // Where the step that puts mesh edges on lines would fold a triangle, it leaves it: at one or two of the 200 places.
+        (Quality::Normal, true, false, [0.03, 0.5]),
         (Quality::Normal, false, true, [0.01, 0.1]),
         (Quality::Normal, true, true, [0.01, 0.1]),
     ];

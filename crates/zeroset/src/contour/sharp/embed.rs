@@ -10,7 +10,7 @@ use crate::spatial::TriangleTree;
 use crate::vec3::{self, Vec3};
 
 /// Triangles with an inserted vertex, or one that moved farther than this, in cells, are looked at.
-const MOVED: f64 = 0.35;
+const MOVED: f64 = 0.2;
 /// Rings of triangles around these that are, too.
 const RINGS: usize = 2;
 /// Rounds of taking back.
@@ -20,7 +20,7 @@ const REACH: f64 = 1.5;
 /// The first time a vertex goes half the way, the next time the whole.
 const SHARES: [f64; 2] = [0.5, 1.0];
 
-/// Takes vertices back until, with coordinates in single precision as files hold them, no triangles that moved cut through each other; the number of vertices taken back, and of pairs that are left.
+/// Takes vertices back until, with coordinates in single precision as files hold them, no triangles that moved cut through each other or have no area; the number of vertices taken back, and of pairs that are left.
 ///
 /// The vertices from `inserted` on were put in; `origins` are the places on F.
 pub(super) fn embed(mesh: &mut Mesh, inserted: usize, origins: &[Vec3], cell: f64) -> (usize, u64) {
@@ -45,11 +45,13 @@ pub(super) fn embed(mesh: &mut Mesh, inserted: usize, origins: &[Vec3], cell: f6
         let own = (round > 0).then(|| TriangleTree::new(&part));
         let found = self_intersections_with(&part, own.as_ref().unwrap_or(&tree), usize::MAX, &());
         let found = found.expect("no one cancels");
+        let flat: Vec<u32> = part.triangles.par_iter().filter(|t| is_flat(&part, t)).flatten().copied().collect();
         pairs = found.pairs;
-        if pairs == 0 || round == ROUNDS {
+        if pairs == 0 && flat.is_empty() || round == ROUNDS {
             break;
         }
         let mut vertices: Vec<u32> = found.listed.iter().flatten().flat_map(|&t| part.triangles[t as usize]).collect();
+        vertices.extend(flat);
         vertices.sort_unstable();
         vertices.dedup();
         if vertices.iter().all(|&v| usize::from(times[v as usize]) == SHARES.len()) {
@@ -83,4 +85,10 @@ pub(super) fn embed(mesh: &mut Mesh, inserted: usize, origins: &[Vec3], cell: f6
         part.triangles = near.into_iter().map(|t| all[t as usize]).collect();
     }
     (times.iter().filter(|&&times| times > 0).count(), pairs)
+}
+
+/// Whether a triangle has no area.
+fn is_flat(mesh: &Mesh, corners: &[u32; 3]) -> bool {
+    let [a, b, c] = corners.map(|v| mesh.vertices[v as usize]);
+    vec3::cross(vec3::sub(b, a), vec3::sub(c, a)) == [0.0; 3]
 }
