@@ -20,7 +20,8 @@ const REACH: f64 = 1.5;
 /// The first time a vertex goes half the way, the next time the whole.
 const SHARES: [f64; 2] = [0.5, 1.0];
 
-/// Takes vertices back until, with coordinates in single precision as files hold them, no triangles that moved cut through each other or have no area; the number of vertices taken back, and of pairs that are left.
+/// Takes vertices back until no triangles that moved cut through each other or have no area, with coordinates in single precision as
+/// files hold them; the number of vertices taken back, and of pairs that are left.
 ///
 /// The vertices from `inserted` on were put in; `origins` are the places on F.
 pub(super) fn embed(mesh: &mut Mesh, inserted: usize, origins: &[Vec3], cell: f64) -> (usize, u64) {
