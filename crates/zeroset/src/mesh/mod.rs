@@ -16,7 +16,7 @@ pub use components::{DroppedComponents, drop_small_components};
 pub(crate) use creases::{Crease, crease_edges};
 pub use creases::{SHARP_ANGLE, creases};
 pub(crate) use edges::Edges;
-pub(crate) use intersections::{Facet, with_tree as self_intersections_with};
+pub(crate) use intersections::{Facet, Projection, pairs_of as overlapping_pairs, projections};
 pub use intersections::{SelfIntersectionError, SelfIntersections, self_intersections};
 pub use simplify::{Deviation, SimplifyError, SimplifyParams, SimplifyReport, simplify};
 pub use topology::{Component, Topology, topology};

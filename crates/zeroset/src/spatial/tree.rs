@@ -1,5 +1,7 @@
 //! The tree that both kinds of item share: median splits, tight boxes, nodes in depth-first order.
 
+use rayon::prelude::*;
+
 use crate::vec3::{self, Vec3};
 
 /// Below this many items a subtree is built by one thread: splitting finer costs more in hand-over than it gains.
@@ -131,14 +133,25 @@ pub(super) struct Tree<T> {
 }
 
 impl<T: Item> Tree<T> {
-    pub(super) fn new(mut items: Vec<T>) -> Self {
+    /// A tree over items whose indices rise.
+    pub(super) fn new(items: Vec<T>) -> Self {
         let mut levels = 0;
         while items.len().div_ceil(1 << levels) > T::LEAF {
             levels += 1;
         }
-        let mut nodes = vec![Node::UNSET; (1 << levels) - 1];
-        let (aabb, first) = build(&mut items, &mut nodes, levels);
-        Self { items, nodes, aabb, first, levels }
+        let key = |(slot, item): (usize, &T)| Key { centre: item.centre(), slot };
+        let mut keys: Vec<Key> = items.par_iter().enumerate().map(key).collect();
+        sort(&mut keys, levels);
+        let items: Vec<T> = keys.into_par_iter().map(|key| items[key.slot]).collect();
+        let nodes = vec![Node::UNSET; (1 << levels) - 1];
+        let mut tree = Self { items, nodes, aabb: Aabb::EMPTY, first: usize::MAX, levels };
+        tree.fit_boxes();
+        tree
+    }
+
+    /// Makes the boxes those of the items, which may have moved since.
+    pub(super) fn fit_boxes(&mut self) {
+        (self.aabb, self.first) = fit(&self.items, &mut self.nodes, self.levels);
     }
 
     pub(super) fn root(&self) -> Subtree {
@@ -176,28 +189,45 @@ impl<T: Item> Tree<T> {
     }
 }
 
-/// Sorts the items into leaf order, fills the nodes, and gives the box and the lowest index of the whole.
-fn build<T: Item>(items: &mut [T], nodes: &mut [Node], levels: u32) -> (Aabb, usize) {
+/// Where an item counts as lying. Sorting these is cheaper than sorting the items.
+struct Key {
+    centre: Vec3,
+    slot: usize,
+}
+
+/// Sorts keys into the order of the leaves.
+fn sort(keys: &mut [Key], levels: u32) {
+    if levels == 0 {
+        return;
+    }
+    let axis = keys.iter().fold(Aabb::EMPTY, |all, key| all.union(Aabb::of(key.centre))).longest_axis();
+    let middle = keys.len() / 2;
+    // The slot breaks ties, so which item goes where follows from the items alone, and equal points are sorted by index.
+    keys.select_nth_unstable_by(middle, |a, b| a.centre[axis].total_cmp(&b.centre[axis]).then(a.slot.cmp(&b.slot)));
+    let parallel = keys.len() > SEQUENTIAL;
+    let (left, right) = keys.split_at_mut(middle);
+    if parallel {
+        rayon::join(|| sort(left, levels - 1), || sort(right, levels - 1));
+    } else {
+        sort(left, levels - 1);
+        sort(right, levels - 1);
+    }
+}
+
+/// Fills the nodes, and gives the box and the lowest index of the whole.
+fn fit<T: Item>(items: &[T], nodes: &mut [Node], levels: u32) -> (Aabb, usize) {
     if levels == 0 {
         return items
             .iter()
             .fold((Aabb::EMPTY, usize::MAX), |(aabb, first), item| (aabb.union(item.aabb()), first.min(item.index())));
     }
-    let axis = items.iter().fold(Aabb::EMPTY, |all, item| all.union(Aabb::of(item.centre()))).longest_axis();
-    let middle = items.len() / 2;
-    // The index breaks ties, so which item goes where follows from the items alone, and equal points are sorted by
-    // index.
-    items.select_nth_unstable_by(middle, |a, b| {
-        a.centre()[axis].total_cmp(&b.centre()[axis]).then(a.index().cmp(&b.index()))
-    });
-    let parallel = items.len() > SEQUENTIAL;
-    let (left_items, right_items) = items.split_at_mut(middle);
+    let (left_items, right_items) = items.split_at(items.len() / 2);
     let (node, below) = nodes.split_first_mut().expect("a subtree of one or more levels has a root");
     let (left_nodes, right_nodes) = below.split_at_mut((1 << (levels - 1)) - 1);
-    let (left, right) = if parallel {
-        rayon::join(|| build(left_items, left_nodes, levels - 1), || build(right_items, right_nodes, levels - 1))
+    let (left, right) = if items.len() > SEQUENTIAL {
+        rayon::join(|| fit(left_items, left_nodes, levels - 1), || fit(right_items, right_nodes, levels - 1))
     } else {
-        (build(left_items, left_nodes, levels - 1), build(right_items, right_nodes, levels - 1))
+        (fit(left_items, left_nodes, levels - 1), fit(right_items, right_nodes, levels - 1))
     };
     *node = Node { aabb: [left.0, right.0], first: [left.1, right.1] };
     (left.0.union(right.0), left.1.min(right.1))

@@ -5,6 +5,7 @@ use super::winding::Dipole;
 use crate::mesh::Mesh;
 use crate::vec3::{self, Vec3};
 use rayon::prelude::*;
+use std::sync::OnceLock;
 
 /// The point of a mesh that is closest to a query.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,8 +38,8 @@ pub struct ClosestPoint {
 #[derive(Debug, Clone)]
 pub struct TriangleTree {
     pub(super) tree: Tree<Triangle>,
-    /// One for each subtree, leaves included: see [`super::winding`].
-    pub(super) dipoles: Vec<Dipole>,
+    /// One for each inner node: see [`super::winding`]. Only winding numbers ask for them.
+    pub(super) dipoles: OnceLock<Vec<Dipole>>,
 }
 
 /// A triangle with its corners at hand.
@@ -102,9 +103,16 @@ impl TriangleTree {
     }
 
     fn from_items(triangles: Vec<Triangle>) -> Self {
-        let tree = Tree::new(triangles);
-        let dipoles = Dipole::of_tree(&tree);
-        Self { tree, dipoles }
+        Self { tree: Tree::new(triangles), dipoles: OnceLock::new() }
+    }
+
+    /// Follows the vertices of the mesh that the tree was built from. Searches stay right, and fast while vertices are near to where they were.
+    pub(crate) fn follow(&mut self, mesh: &Mesh) {
+        self.tree.items.par_iter_mut().for_each(|item| {
+            item.corners = mesh.triangles[item.index].map(|v| mesh.vertices[v as usize]);
+        });
+        self.tree.fit_boxes();
+        self.dipoles = OnceLock::new();
     }
 
     /// Number of triangles held.

@@ -168,6 +168,7 @@ impl TriangleTree {
     #[must_use]
     pub fn winding_number(&self, q: [f64; 3]) -> WindingNumber {
         let (mut value, mut bound) = (0.0, 0.0);
+        let dipoles = self.dipoles.get_or_init(|| Dipole::of_tree(&self.tree));
         let mut waiting = Vec::with_capacity(64);
         if !self.is_empty() && vec3::is_finite(q) {
             waiting.push(self.tree.root());
@@ -175,7 +176,7 @@ impl TriangleTree {
         while let Some(subtree) = waiting.pop() {
             if subtree.levels == 0 {
                 value += self.tree.items_of(subtree).iter().map(|t| solid_angle(t.corners, q)).sum::<f64>();
-            } else if let Some(far) = self.dipoles[subtree.node].far(q) {
+            } else if let Some(far) = dipoles[subtree.node].far(q) {
                 value += far.0;
                 bound += far.1;
             } else {

@@ -5,91 +5,156 @@
 
 use rayon::prelude::*;
 
-use crate::mesh::{Mesh, self_intersections_with};
+use crate::mesh::{Mesh, Projection, overlapping_pairs, projections};
 use crate::spatial::TriangleTree;
 use crate::vec3::{self, Vec3};
 
-/// Triangles with an inserted vertex, or one that moved farther than this, in cells, are looked at.
+/// Vertices that moved farther than this, in cells, may have brought triangles together.
 const MOVED: f64 = 0.2;
-/// Rings of triangles around these that are, too.
+/// Rings of triangles around these that they are held against.
 const RINGS: usize = 2;
-/// Rounds of taking back.
+/// The most rounds of taking back.
 const ROUNDS: usize = 20;
-/// How far triangles may be from those that changed and still be met by them, in cells.
-const REACH: f64 = 1.5;
 /// The first time a vertex goes half the way, the next time the whole.
 const SHARES: [f64; 2] = [0.5, 1.0];
+/// Where all vertices of a pair are on F already, neighbours up to so many rings away are in the way.
+const MOST_RINGS: usize = 4;
 
-/// Takes vertices back until no triangles that moved cut through each other or have no area, with coordinates in single precision as
-/// files hold them; the number of vertices taken back, and of pairs that are left.
-///
-/// The vertices from `inserted` on were put in; `origins` are the places on F.
-pub(super) fn embed(mesh: &mut Mesh, inserted: usize, origins: &[Vec3], cell: f64) -> (usize, u64) {
-    let has_moved =
-        |v: usize| v >= inserted || vec3::distance_squared(mesh.vertices[v], origins[v]) > (MOVED * cell).powi(2);
-    let mut is_near: Vec<bool> = (0..mesh.vertices.len()).into_par_iter().map(has_moved).collect();
-    for _ in 0..RINGS {
-        let touches = |corners: &&[u32; 3]| corners.iter().any(|&v| is_near[v as usize]);
-        let beside: Vec<u32> = mesh.triangles.par_iter().filter(touches).flatten().copied().collect();
-        beside.into_iter().for_each(|v| is_near[v as usize] = true);
-    }
-    let triangles: Vec<[u32; 3]> =
-        mesh.triangles.par_iter().copied().filter(|corners| corners.iter().any(|&v| is_near[v as usize])).collect();
-    let rounded = |v: Vec3| v.map(|c| f64::from(c as f32));
-    let vertices = mesh.vertices.par_iter().map(|&v| rounded(v)).collect();
-    let mut part = Mesh { vertices, triangles, ..Mesh::default() };
-    let tree = TriangleTree::new(&part);
-    let all = part.triangles.clone();
-    let mut times = vec![0_u8; part.vertices.len()];
-    let mut pairs = 0;
-    for round in 0..=ROUNDS {
-        let own = (round > 0).then(|| TriangleTree::new(&part));
-        let found = self_intersections_with(&part, own.as_ref().unwrap_or(&tree), usize::MAX, &());
-        let found = found.expect("no one cancels");
-        let flat: Vec<u32> = part.triangles.par_iter().filter(|t| is_flat(&part, t)).flatten().copied().collect();
-        pairs = found.pairs;
-        if pairs == 0 && flat.is_empty() || round == ROUNDS {
-            break;
-        }
-        let mut vertices: Vec<u32> = found.listed.iter().flatten().flat_map(|&t| part.triangles[t as usize]).collect();
-        vertices.extend(flat);
-        vertices.sort_unstable();
-        vertices.dedup();
-        if vertices.iter().all(|&v| usize::from(times[v as usize]) == SHARES.len()) {
-            // All of them are on F: their neighbours stand in the way.
-            let is_near = |corners: &&[u32; 3]| corners.iter().any(|v| vertices.binary_search(v).is_ok());
-            vertices = part.triangles.iter().filter(is_near).flatten().copied().collect();
-            vertices.sort_unstable();
-            vertices.dedup();
-        }
-        let mut goes_on = false;
-        for &v in &vertices {
-            let v = v as usize;
-            if let Some(share) = SHARES.get(usize::from(times[v])) {
-                mesh.vertices[v] = vec3::lerp(mesh.vertices[v], origins[v], *share);
-                part.vertices[v] = rounded(mesh.vertices[v]);
-                times[v] += 1;
-                goes_on = true;
-            }
-        }
-        if !goes_on {
-            break;
-        }
-        let mut near: Vec<u32> = Vec::new();
-        for &v in &vertices {
-            let p = part.vertices[v as usize];
-            let reach = [REACH * cell; 3];
-            tree.visit_meeting(vec3::sub(p, reach), vec3::add(p, reach), &mut |t| near.push(t as u32));
-        }
-        near.sort_unstable();
-        near.dedup();
-        part.triangles = near.into_iter().map(|t| all[t as usize]).collect();
-    }
-    (times.iter().filter(|&&times| times > 0).count(), pairs)
+/// Places whose coordinates single precision holds: what is true of a mesh on them is true of it in every file.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Raster {
+    step: f64,
 }
 
-/// Whether a triangle has no area.
-fn is_flat(mesh: &Mesh, corners: &[u32; 3]) -> bool {
-    let [a, b, c] = corners.map(|v| mesh.vertices[v as usize]);
-    vec3::cross(vec3::sub(b, a), vec3::sub(c, a)) == [0.0; 3]
+impl Raster {
+    /// The finest that holds a mesh: its steps are a power of two, the largest coordinate is about 2^23 of them.
+    pub(super) fn new(mesh: &Mesh) -> Self {
+        let largest =
+            mesh.vertices.par_iter().map(|v| v.iter().fold(0.0, |m, c| c.abs().max(m))).reduce(|| 0.0, f64::max);
+        Self { step: if largest > 0.0 { 2.0_f64.powi(largest.log2().floor() as i32 - 22) } else { 1.0 } }
+    }
+
+    /// The place nearest to a position.
+    pub(super) fn nearest(self, v: Vec3) -> Vec3 {
+        v.map(|c| (c / self.step).round_ties_even() * self.step)
+    }
+}
+
+/// Puts the vertices on a raster, and takes them back until no triangles that moved cut through each other or have no area; the
+/// number of vertices taken back, and of pairs that are left.
+///
+/// The vertices from `inserted` on were put in; `origins` are the places on F, on the raster.
+pub(super) fn embed(mesh: &mut Mesh, inserted: usize, origins: &[Vec3], raster: Raster, cell: f64) -> (usize, u64) {
+    mesh.vertices.par_iter_mut().for_each(|v| *v = raster.nearest(*v));
+    let mut part = Part::new(mesh, inserted, origins, cell);
+    let mut times = vec![0_u8; mesh.vertices.len()];
+    let is_done = |times: &[u8], v: u32| usize::from(times[v as usize]) == SHARES.len();
+    let mut rings = 1;
+    for _ in 0..ROUNDS {
+        let bad = part.bad();
+        let (stuck, mut going): (Vec<u32>, Vec<u32>) = {
+            let (stuck, going): (Vec<_>, Vec<_>) = bad.chunks(2).partition(|pair| {
+                pair.iter().flat_map(|&t| part.mesh.triangles[t as usize]).all(|v| is_done(&times, v))
+            });
+            (part.corners(&stuck.concat()), part.corners(&going.concat()))
+        };
+        if !stuck.is_empty() {
+            going.extend(part.around(&stuck, rings));
+        }
+        going.sort_unstable();
+        going.dedup();
+        going.retain(|&v| !is_done(&times, v));
+        if going.is_empty() {
+            rings += 1;
+            if stuck.is_empty() || rings > MOST_RINGS {
+                break;
+            }
+            continue;
+        }
+        for &v in &going {
+            let v = v as usize;
+            let share = SHARES[usize::from(times[v])];
+            mesh.vertices[v] = raster.nearest(vec3::lerp(mesh.vertices[v], origins[v], share));
+            times[v] += 1;
+        }
+        part.follow(mesh, &going);
+    }
+    (times.iter().filter(|&&times| times > 0).count(), part.pairs.len() as u64)
+}
+
+/// The part of a mesh that moved.
+struct Part {
+    mesh: Mesh,
+    tree: TriangleTree,
+    projections: Vec<Option<Projection>>,
+    /// Triangles that cut through each other.
+    pairs: Vec<[u32; 2]>,
+}
+
+impl Part {
+    fn new(mesh: &Mesh, inserted: usize, origins: &[Vec3], cell: f64) -> Self {
+        let has_moved =
+            |v: usize| v >= inserted || vec3::distance_squared(mesh.vertices[v], origins[v]) > (MOVED * cell).powi(2);
+        let mut is_near: Vec<bool> = (0..mesh.vertices.len()).into_par_iter().map(has_moved).collect();
+        let touches = |is_near: &[bool], corners: &[u32; 3]| corners.iter().any(|&v| is_near[v as usize]);
+        let asked = is_near.clone();
+        add_rings(&mut is_near, &mesh.triangles, RINGS);
+        let triangles: Vec<[u32; 3]> =
+            mesh.triangles.par_iter().copied().filter(|corners| touches(&is_near, corners)).collect();
+        drop(is_near);
+        let asked: Vec<bool> = triangles.par_iter().map(|corners| touches(&asked, corners)).collect();
+        let vertices = mesh.vertices.clone();
+        let mesh = Mesh { vertices, triangles, ..Mesh::default() };
+        let tree = TriangleTree::new(&mesh);
+        let projections = projections(&mesh);
+        let pairs = overlapping_pairs(&mesh, &tree, &projections, &asked);
+        Self { mesh, tree, projections, pairs }
+    }
+
+    /// The triangles of pairs, two and two, and those without area, each twice.
+    fn bad(&self) -> Vec<u32> {
+        let flat =
+            (0..self.projections.len() as u32).into_par_iter().filter(|&t| self.projections[t as usize].is_none());
+        let mut bad: Vec<u32> = flat.flat_map_iter(|t| [t, t]).collect();
+        bad.extend(self.pairs.iter().flatten());
+        bad
+    }
+
+    fn corners(&self, triangles: &[u32]) -> Vec<u32> {
+        triangles.iter().flat_map(|&t| self.mesh.triangles[t as usize]).collect()
+    }
+
+    /// The vertices up to so many rings around some.
+    fn around(&self, vertices: &[u32], rings: usize) -> Vec<u32> {
+        let mut is_near = vec![false; self.mesh.vertices.len()];
+        vertices.iter().for_each(|&v| is_near[v as usize] = true);
+        add_rings(&mut is_near, &self.mesh.triangles, rings);
+        (0..is_near.len() as u32).filter(|&v| is_near[v as usize]).collect()
+    }
+
+    /// Takes over some vertices of the whole mesh, and looks at their triangles again.
+    fn follow(&mut self, whole: &Mesh, vertices: &[u32]) {
+        let mut has_moved = vec![false; self.mesh.vertices.len()];
+        for &v in vertices {
+            has_moved[v as usize] = true;
+            self.mesh.vertices[v as usize] = whole.vertices[v as usize];
+        }
+        let touches = |corners: &[u32; 3]| corners.iter().any(|&v| has_moved[v as usize]);
+        let asked: Vec<bool> = self.mesh.triangles.par_iter().map(touches).collect();
+        self.tree.follow(&self.mesh);
+        for (t, corners) in self.mesh.triangles.iter().enumerate().filter(|(t, _)| asked[*t]) {
+            self.projections[t] = Projection::new(corners.map(|v| self.mesh.vertices[v as usize]));
+        }
+        self.pairs.retain(|pair| !pair.iter().any(|&t| asked[t as usize]));
+        self.pairs.extend(overlapping_pairs(&self.mesh, &self.tree, &self.projections, &asked));
+    }
+}
+
+/// Adds the vertices of all triangles that have one, so many times.
+fn add_rings(has: &mut [bool], triangles: &[[u32; 3]], rings: usize) {
+    for _ in 0..rings {
+        let touches = |corners: &&[u32; 3]| corners.iter().any(|&v| has[v as usize]);
+        let beside: Vec<u32> = triangles.par_iter().filter(touches).flatten().copied().collect();
+        beside.into_iter().for_each(|v| has[v as usize] = true);
+    }
 }

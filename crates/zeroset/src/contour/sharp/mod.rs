@@ -17,7 +17,8 @@
 //!    between three gets one where the three meet, and is cut accordingly. So every crease is a chain of mesh edges.
 //! 5. Vertices on curved parts settle until the triangles face the way of their sheets.
 //! 6. Triangles that were folded over or flattened on the way are mended by collapses and flips within one sheet.
-//! 7. Where triangles still cut through each other, their vertices go back towards their places on the surface of F.
+//! 7. Vertices go onto a raster that single precision holds. Where triangles still cut through each other there, their vertices go back
+//!    towards their places on the surface of F.
 //!
 //! # Guaranteed
 //! The mesh stays a manifold with the same boundary, as triangles are only cut, and collapsed where that keeps a disc a disc. The same bits
@@ -46,12 +47,14 @@ mod tidy;
 #[cfg(test)]
 mod tests;
 
+use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::feature::{Facets, Flat};
 use crate::mesh::Mesh;
 use crate::spatial::PointTree;
 use crate::vec3::Vec3;
+use embed::Raster;
 use stars::{Fans, Stars};
 
 /// What the surface is known to be.
@@ -109,14 +112,16 @@ pub(crate) fn sharpen(mesh: &mut Mesh, known: &Known) -> SharpReport {
     drop(stars);
     let on_planes = (0..mesh.vertices.len() as u32).filter(|&v| sheets.of(v).plane.is_some()).count();
     let first = mesh.vertices.len();
+    let raster = Raster::new(mesh);
     let mut inserted = insert::insert_creases(mesh, &sheets, known.cell);
     drop(sheets);
     let on_creases = inserted.seats.iter().filter(|s| matches!(s, Seat::Along(..))).count();
     let at_corners = inserted.seats.iter().filter(|s| matches!(s, Seat::At)).count();
+    inserted.origins.par_iter_mut().for_each(|origin| *origin = raster.nearest(*origin));
     let fans = Fans::new(mesh);
-    settle::settle(mesh, &fans, &inserted);
+    settle::settle(mesh, &fans, &inserted, known.curved_creases);
     let folded = tidy::tidy(mesh, fans, &mut inserted, known.cell);
-    let (taken_back, intersections) = embed::embed(mesh, first, &inserted.origins, known.cell);
+    let (taken_back, intersections) = embed::embed(mesh, first, &inserted.origins, raster, known.cell);
     super::clip::drop_unused(mesh);
     SharpReport { on_planes, on_creases, at_corners, folded, taken_back, intersections }
 }

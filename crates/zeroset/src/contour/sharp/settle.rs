@@ -16,10 +16,12 @@ const ROUNDS: usize = 8;
 /// Sheets are smoother than the vertices that F gives, as their normals are means over many. Vertices on planes, creases and the rim stay.
 ///
 /// Source: the vertex update of two-step mesh denoising, Sun et al. 2007.
-pub(super) fn settle(mesh: &mut Mesh, fans: &Fans, inserted: &Inserted) {
-    let loose: Vec<u32> = (0..mesh.vertices.len() as u32)
-        .filter(|&v| inserted.seats[v as usize] == Seat::Loose && !is_rim(mesh, fans.of(v), v))
-        .collect();
+/// Unless `everywhere`, only beside those.
+pub(super) fn settle(mesh: &mut Mesh, fans: &Fans, inserted: &Inserted, everywhere: bool) {
+    let is_loose = |v: u32| inserted.seats[v as usize] == Seat::Loose;
+    let may =
+        |&v: &u32| is_loose(v) && (everywhere || is_beside(mesh, fans.of(v), is_loose)) && !is_rim(mesh, fans.of(v), v);
+    let loose: Vec<u32> = (0..mesh.vertices.len() as u32).into_par_iter().filter(may).collect();
     for _ in 0..ROUNDS {
         let old = &mesh.vertices;
         let moved: Vec<Vec3> = loose
@@ -40,6 +42,11 @@ pub(super) fn settle(mesh: &mut Mesh, fans: &Fans, inserted: &Inserted) {
             mesh.vertices[v as usize] = p;
         }
     }
+}
+
+/// Whether some of the triangles has a corner that is not loose.
+fn is_beside(mesh: &Mesh, fan: &[u32], is_loose: impl Fn(u32) -> bool) -> bool {
+    fan.iter().flat_map(|&t| mesh.triangles[t as usize]).any(|v| !is_loose(v))
 }
 
 /// Whether the triangles round a vertex leave a gap: then some vertex follows it that none goes before.

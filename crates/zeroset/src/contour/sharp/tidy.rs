@@ -10,7 +10,7 @@ use rustc_hash::FxHashMap;
 use super::Seat;
 use super::insert::Inserted;
 use super::stars::Fans;
-use crate::mesh::Mesh;
+use crate::mesh::{Facet, Mesh};
 use crate::vec3::{self, Vec3};
 
 /// Triangles below this quality are mended.
@@ -39,21 +39,29 @@ pub(super) fn tidy(mesh: &mut Mesh, fans: Fans, inserted: &mut Inserted, cell: f
     };
     let all = 0..patchwork.triangles.len() as u32;
     let mut bad: Vec<u32> = all.into_par_iter().filter(|&t| patchwork.is_bad(t)).collect();
+    let mut waiting = bad.clone();
     for _ in 0..PASSES {
         let mut touched = Vec::new();
-        for &t in &bad {
+        for &t in &waiting {
             if patchwork.is_bad(t) {
                 patchwork.mend(t, &mut touched);
             }
         }
-        bad.extend(touched);
-        bad.sort_unstable();
-        bad.dedup();
-        bad.retain(|&t| patchwork.is_bad(t));
-        if bad.is_empty() {
+        // Only where something changed another attempt can succeed.
+        let around =
+            |&t: &u32| patchwork.corners(t).into_iter().flatten().flat_map(|v| patchwork.fan(v).iter().copied());
+        waiting = touched.iter().flat_map(around).collect();
+        waiting.sort_unstable();
+        waiting.dedup();
+        waiting.retain(|&t| patchwork.is_bad(t));
+        bad.extend(&waiting);
+        if waiting.is_empty() {
             break;
         }
     }
+    bad.sort_unstable();
+    bad.dedup();
+    bad.retain(|&t| patchwork.is_bad(t));
     mesh.vertices = patchwork.vertices;
     mesh.triangles = patchwork.triangles;
     mesh.triangles.retain(|corners| *corners != DEAD);
@@ -107,7 +115,32 @@ impl Patchwork<'_> {
         vec3::cross(vec3::sub(b, a), vec3::sub(c, a))
     }
 
-    /// Whether a triangle with new corners faces another way on the surface of F than it did at first. The mesh is to stay embedded there.
+    /// Whether triangles with new corners have no area on the surface of F, or cut through each other or those around them there. The mesh is
+    /// to stay embedded there.
+    fn cuts(&self, new: &[(u32, [u32; 3])], gone: &[u32]) -> bool {
+        let placed = |corners: [u32; 3]| corners.map(|v| self.origins[v as usize]);
+        let facet = |corners: [u32; 3]| Some((Facet::new(placed(corners))?, bounds(placed(corners))));
+        let Some(facets) = new.iter().map(|&(_, corners)| facet(corners)).collect::<Option<Vec<_>>>() else {
+            return true;
+        };
+        if (1..facets.len()).any(|i| facets[..i].iter().any(|(other, _)| other.overlaps(&facets[i].0))) {
+            return true;
+        }
+        let mut around: Vec<u32> =
+            new.iter().flat_map(|(_, corners)| corners).flat_map(|&v| self.fan(v)).copied().collect();
+        around.sort_unstable();
+        around.dedup();
+        around.retain(|t| !gone.contains(t) && !new.iter().any(|(own, _)| own == t));
+        around.into_iter().any(|t| {
+            let [low, high] = bounds(placed(self.triangles[t as usize]));
+            let meets = |b: &[Vec3; 2]| (0..3).all(|a| low[a] <= b[1][a] && b[0][a] <= high[a]);
+            let near: Vec<&Facet> = facets.iter().filter(|(_, b)| meets(b)).map(|(facet, _)| facet).collect();
+            let other = if near.is_empty() { None } else { Facet::new(placed(self.triangles[t as usize])) };
+            other.is_some_and(|other| near.iter().any(|own| own.overlaps(&other)))
+        })
+    }
+
+    /// Whether a triangle with new corners faces another way on the surface of F than it did at first.
     fn turns(&self, t: u32, corners: [u32; 3]) -> bool {
         let first = self.first_areas.get(&t).copied().unwrap_or_else(|| self.on_field(self.triangles[t as usize]));
         let new = self.on_field(corners);
@@ -202,8 +235,9 @@ impl Patchwork<'_> {
         let before = star.iter().map(|&t| self.quality(t)).fold(1.0, f64::min);
         let moved = |corners: [u32; 3]| corners.map(|v| if v == from { to } else { v });
         let kept: Vec<u32> = star.iter().copied().filter(|t| !gone.contains(t)).collect();
-        let after = kept.iter().map(|&t| self.quality_of(moved(self.triangles[t as usize]), t)).fold(1.0, f64::min);
-        if after <= before || kept.iter().any(|&t| self.turns(t, moved(self.triangles[t as usize]))) {
+        let new: Vec<(u32, [u32; 3])> = kept.iter().map(|&t| (t, moved(self.triangles[t as usize]))).collect();
+        let after = new.iter().map(|&(t, corners)| self.quality_of(corners, t)).fold(1.0, f64::min);
+        if after <= before || new.iter().any(|&(t, corners)| self.turns(t, corners)) || self.cuts(&new, &gone) {
             return false;
         }
         kept.iter().for_each(|&t| self.remember(t));
@@ -211,8 +245,8 @@ impl Patchwork<'_> {
             let corners = std::mem::replace(&mut self.triangles[t as usize], DEAD);
             corners.iter().for_each(|&v| self.fan_mut(v).retain(|&u| u != t));
         }
-        for &t in &kept {
-            self.triangles[t as usize] = moved(self.triangles[t as usize]);
+        for (t, corners) in new {
+            self.triangles[t as usize] = corners;
             self.fan_mut(to).push(t);
         }
         self.fan_mut(from).clear();
@@ -239,13 +273,13 @@ impl Patchwork<'_> {
             return false;
         }
         let before = self.quality(s).min(self.quality(t));
-        let new = [[c, a, d], [d, b, c]];
-        let after = self.quality_of(new[0], s).min(self.quality_of(new[1], t));
-        if after <= before || self.turns(s, new[0]) || self.turns(t, new[1]) {
+        let new = [(s, [c, a, d]), (t, [d, b, c])];
+        let after = new.iter().map(|&(t, corners)| self.quality_of(corners, t)).fold(1.0, f64::min);
+        if after <= before || new.iter().any(|&(t, corners)| self.turns(t, corners)) || self.cuts(&new, &[]) {
             return false;
         }
         pair.iter().for_each(|&t| self.remember(t));
-        for (&t, corners) in pair.iter().zip(new) {
+        for (t, corners) in new {
             self.triangles[t as usize] = corners;
         }
         self.fan_mut(a).retain(|&u| u != t);
@@ -289,6 +323,10 @@ impl Patchwork<'_> {
         self.vertices[v as usize] = p;
         false
     }
+}
+
+fn bounds([a, b, c]: [Vec3; 3]) -> [Vec3; 2] {
+    [vec3::min(vec3::min(a, b), c), vec3::max(vec3::max(a, b), c)]
 }
 
 /// The area over that of the equilateral triangle with the same sum of squared sides; negative for one that faces away.

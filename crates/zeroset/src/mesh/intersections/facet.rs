@@ -28,17 +28,38 @@ fn side([a, b, c]: [Vec3; 3], p: Vec3) -> f64 {
     orient3d(solid(a), solid(b), solid(c), solid(p))
 }
 
-impl Facet {
+/// A projection that leaves a triangle an area.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Projection {
+    /// The axis that it leaves out.
+    across: u8,
+    /// Whether the triangle is clockwise there.
+    clockwise: bool,
+}
+
+impl Projection {
     /// `None` if the corners lie on one line, exactly.
     pub(crate) fn new([a, b, c]: [Vec3; 3]) -> Option<Self> {
         let normal = vec3::cross(vec3::sub(b, a), vec3::sub(c, a)).map(f64::abs);
         let longest = (0..3).fold(0, |best, axis| if normal[axis] > normal[best] { axis } else { best });
         (0..3).find_map(|step| {
-            let axes = PROJECTIONS[(longest + step) % 3];
-            let turn = turn(axes, [a, b, c]);
-            let corners = if turn > 0.0 { [a, b, c] } else { [a, c, b] };
-            (turn != 0.0).then_some(Self { corners, axes })
+            let across = (longest + step) % 3;
+            let turn = turn(PROJECTIONS[across], [a, b, c]);
+            (turn != 0.0).then_some(Self { across: across as u8, clockwise: turn < 0.0 })
         })
+    }
+}
+
+impl Facet {
+    /// `None` if the corners lie on one line, exactly.
+    pub(crate) fn new(corners: [Vec3; 3]) -> Option<Self> {
+        Some(Self::projected(corners, Projection::new(corners)?))
+    }
+
+    /// The triangle of which `projection` was found.
+    pub(crate) fn projected([a, b, c]: [Vec3; 3], projection: Projection) -> Self {
+        let corners = if projection.clockwise { [a, c, b] } else { [a, b, c] };
+        Self { corners, axes: PROJECTIONS[projection.across as usize] }
     }
 
     /// Whether the two have more in common than corners, or an edge, that lie at the same places in both. Exact.

@@ -50,7 +50,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-pub(crate) use facet::Facet;
+pub(crate) use facet::{Facet, Projection};
 
 use super::{Mesh, MeshError};
 use crate::monitor::{Cancelled, Monitor, Steps};
@@ -102,26 +102,25 @@ pub(crate) fn with_tree(
     most_listed: usize,
     monitor: &dyn Monitor,
 ) -> Result<SelfIntersections, Cancelled> {
-    let corners = |t: u32| mesh.triangles[t as usize].map(|v| mesh.vertices[v as usize]);
-    let facets: Vec<Option<Facet>> =
-        (0..mesh.triangles.len() as u32).into_par_iter().map(|t| Facet::new(corners(t))).collect();
+    let projections = projections(mesh);
     let taking_part: Vec<AtomicBool> = mesh.triangles.iter().map(|_| AtomicBool::new(false)).collect();
     let steps = Steps::new(monitor, 0.0..1.0, mesh.triangles.len());
     let order = tree.leaf_order();
     let parts = order.par_chunks(CHUNK).map(|chunk| {
         let mut found = Listed { count: 0, first: Vec::new(), most: most_listed };
         for &t in chunk {
-            let Some(facet) = &facets[t as usize] else { continue };
-            let [a, b, c] = corners(t);
-            let (low, high) = (vec3::min(vec3::min(a, b), c), vec3::max(vec3::max(a, b), c));
-            tree.visit_meeting(low, high, &mut |other| {
-                // Each pair is looked at once, from its lower triangle.
-                if other > t as usize && facets[other].as_ref().is_some_and(|other| facet.overlaps(other)) {
-                    found.add([t, other as u32]);
+            // Each pair is looked at once, from its lower triangle.
+            visit_overlapping(
+                (mesh, &projections),
+                tree,
+                t,
+                |other| other > t,
+                |other| {
+                    found.add([t, other]);
                     taking_part[t as usize].store(true, Ordering::Relaxed);
-                    taking_part[other].store(true, Ordering::Relaxed);
-                }
-            });
+                    taking_part[other as usize].store(true, Ordering::Relaxed);
+                },
+            );
         }
         steps.advance(chunk.len()).map(|()| found)
     });
@@ -133,6 +132,57 @@ pub(crate) fn with_tree(
     all.cut();
     let triangles = taking_part.into_iter().filter(|part| part.load(Ordering::Relaxed)).count();
     Ok(SelfIntersections { pairs: all.count, triangles, listed: all.first })
+}
+
+/// The pairs in which one of the triangles asked for takes part, the lower triangle first, in their order.
+pub(crate) fn pairs_of(
+    mesh: &Mesh,
+    tree: &TriangleTree,
+    projections: &[Option<Projection>],
+    asked: &[bool],
+) -> Vec<[u32; 2]> {
+    let order: Vec<u32> = tree.leaf_order().into_iter().filter(|&t| asked[t as usize]).collect();
+    let mut pairs: Vec<[u32; 2]> = order
+        .par_chunks(CHUNK)
+        .flat_map_iter(|chunk| {
+            let mut found = Vec::new();
+            for &t in chunk {
+                let counts = |other: u32| other > t || other < t && !asked[other as usize];
+                visit_overlapping((mesh, projections), tree, t, counts, |other| {
+                    found.push([t.min(other), t.max(other)])
+                });
+            }
+            found
+        })
+        .collect();
+    pairs.par_sort_unstable();
+    pairs
+}
+
+/// How each triangle is best projected; `None` for one without area.
+pub(crate) fn projections(mesh: &Mesh) -> Vec<Option<Projection>> {
+    mesh.triangles.par_iter().map(|corners| Projection::new(corners.map(|v| mesh.vertices[v as usize]))).collect()
+}
+
+/// Visits the triangles that one has more in common with than it should, among those that count.
+fn visit_overlapping(
+    (mesh, projections): (&Mesh, &[Option<Projection>]),
+    tree: &TriangleTree,
+    t: u32,
+    counts: impl Fn(u32) -> bool,
+    mut visit: impl FnMut(u32),
+) {
+    let corners = |t: u32| mesh.triangles[t as usize].map(|v| mesh.vertices[v as usize]);
+    let facet = |t: u32| Some(Facet::projected(corners(t), projections[t as usize]?));
+    let Some(own) = facet(t) else { return };
+    let [a, b, c] = corners(t);
+    let (low, high) = (vec3::min(vec3::min(a, b), c), vec3::max(vec3::max(a, b), c));
+    tree.visit_meeting(low, high, &mut |other| {
+        let other = other as u32;
+        if counts(other) && facet(other).is_some_and(|other| own.overlaps(&other)) {
+            visit(other);
+        }
+    });
 }
 
 /// Counts pairs and keeps the first in their order.
