@@ -97,7 +97,7 @@ pub(super) fn insert_creases(mesh: &mut Mesh, sheets: &Sheets, cell: f64) -> Ins
 }
 
 /// Where a mesh edge meets the line of two sheets: the share of the edge before it, the position, and the line's direction.
-fn crossing(ends: [Vec3; 2], flats: [Flat; 2], cell: f64) -> Option<(f64, Vec3, Vec3)> {
+pub(super) fn crossing(ends: [Vec3; 2], flats: [Flat; 2], cell: f64) -> Option<(f64, Vec3, Vec3)> {
     let across = vec3::cross(flats[0].normal, flats[1].normal);
     let sine = vec3::norm(across);
     if sine < LEAST_SINE {

@@ -76,7 +76,7 @@ pub(crate) struct Known<'a> {
 }
 
 /// What was made sharp.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Default)]
 pub struct SharpReport {
     /// Vertices put on planes.
     pub on_planes: usize,
@@ -84,6 +84,10 @@ pub struct SharpReport {
     pub on_creases: usize,
     /// Vertices put in at corners.
     pub at_corners: usize,
+    /// Length of the mesh edges along creases, in the units of the points.
+    pub crease_length: f64,
+    /// The mean angle, in degrees, by which the surface turns there, weighted by length; `None` without creases.
+    pub crease_angle: Option<f64>,
     /// Triangles that were still folded or flat before vertices were taken back.
     pub folded: usize,
     /// Vertices taken back towards F, as triangles there cut through others.
@@ -122,6 +126,7 @@ pub(crate) fn sharpen(mesh: &mut Mesh, known: &Known) -> SharpReport {
     settle::settle(mesh, &fans, &inserted, known.curved_creases);
     let folded = tidy::tidy(mesh, fans, &mut inserted, known.cell);
     let (taken_back, intersections) = embed::embed(mesh, first, &inserted.origins, raster, known.cell);
+    let (crease_length, crease_angle) = creases::measure(mesh, &inserted.seats);
     super::clip::drop_unused(mesh);
-    SharpReport { on_planes, on_creases, at_corners, folded, taken_back, intersections }
+    SharpReport { on_planes, on_creases, at_corners, crease_length, crease_angle, folded, taken_back, intersections }
 }

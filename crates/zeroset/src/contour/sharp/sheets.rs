@@ -26,6 +26,8 @@ pub(super) const DISAGREEMENT: f64 = 0.3;
 const CERTAIN: f64 = 0.01;
 /// How many of the nearest points tell whether a vertex is on a plane at all.
 const POINTS: usize = 8;
+/// Rings of vertices in which a plane goes over into a curved part.
+const BLENDED: usize = 4;
 /// Vertices that one task looks at.
 const CHUNK: usize = 1 << 12;
 
@@ -107,12 +109,43 @@ pub(super) fn sheets(mesh: &Mesh, stars: &Stars, known: &Known) -> Sheets {
     };
     drop((planes, contested));
     let mut sheets = Sheets { of, curved_creases: known.curved_creases };
+    let borders = borders(stars, &sheets);
     for (v, share) in unproven(mesh, stars, known, &sheets) {
         let (p, normal) = (mesh.vertices[v as usize], normals[v as usize]);
         let position = vec3::lerp(p, sheets.of(v).flat.foot(p), share);
         sheets.of[v as usize] = Sheet { plane: None, flat: Flat::through(normal, position) };
     }
+    blend(mesh, stars, &mut sheets, borders);
     sheets
+}
+
+/// The vertices on planes that run into curved parts without a crease.
+fn borders(stars: &Stars, sheets: &Sheets) -> Vec<u32> {
+    let runs_on = |&v: &u32| {
+        let own = sheets.of(v);
+        let is_curved = |&u: &u32| sheets.of(u).plane.is_none() && !sheets.of(u).meets(own);
+        own.plane.is_some() && stars.around(v).iter().any(is_curved)
+    };
+    (0..sheets.of.len() as u32).into_par_iter().filter(runs_on).collect()
+}
+
+/// Leads planes over into curved parts: from their borders on so many rings of vertices go to the plane by shares that rise. Else a plane
+/// taken for a part of something round would stand out by a step.
+fn blend(mesh: &Mesh, stars: &Stars, sheets: &mut Sheets, mut ring: Vec<u32>) {
+    ring.retain(|&v| sheets.of(v).plane.is_some());
+    let mut is_blended = vec![false; sheets.of.len()];
+    for step in 1..=BLENDED {
+        ring.retain(|&v| !std::mem::replace(&mut is_blended[v as usize], true));
+        let mut next = Vec::new();
+        for &v in &ring {
+            let Sheet { plane, flat } = *sheets.of(v);
+            next.extend(stars.around(v).iter().copied().filter(|&u| sheets.of(u).plane == plane));
+            let p = mesh.vertices[v as usize];
+            let position = vec3::lerp(p, flat.foot(p), step as f64 / (BLENDED + 1) as f64);
+            sheets.of[v as usize].flat = Flat::through(flat.normal, position);
+        }
+        ring = next;
+    }
 }
 
 /// The cheapest plane of each vertex, and the vertices that have a choice, in their order.

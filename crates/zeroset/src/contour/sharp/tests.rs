@@ -105,6 +105,9 @@ fn a_box_that_f_has_rounded_gets_its_edges_and_corners_back() {
     let (mesh, report) = sharpened(|p| rounded_box(p, 0.5 * CELL), &faces(0.4 * CELL), &points);
     sound(&mesh);
     assert_eq!((report.at_corners >= 8, report.folded), (true, 0), "{report:?}");
+    let [a, b, c] = HALF.map(|h| 2.0 * h);
+    assert!((report.crease_length - 4.0 * (a + b + c)).abs() < 1e-5, "{report:?}");
+    assert!((report.crease_angle.unwrap() - 90.0).abs() < 1e-3, "{report:?}");
     let exact = TriangleTree::new(&truth());
     // Half a step of single precision at 1, along each axis.
     let rounding = 3.0_f64.sqrt() * 2.0_f64.powi(-24);
@@ -114,7 +117,6 @@ fn a_box_that_f_has_rounded_gets_its_edges_and_corners_back() {
     }
     // Edges and corners are there, not cut off: volume and area are the box's to rounding.
     let t = topology(&mesh).unwrap();
-    let [a, b, c] = HALF.map(|h| 2.0 * h);
     let area = 2.0 * (a * b + b * c + c * a);
     assert!((t.volume.unwrap() - a * b * c).abs() < rounding * area, "{:?}", t.volume);
     assert!((t.area - area).abs() < rounding * 4.0 * (a + b + c), "{}", t.area);
