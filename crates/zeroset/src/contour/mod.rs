@@ -6,6 +6,7 @@
 //! of the places where F vanishes on its tetrahedron's edges, or lies where the mesh bends least ([`placement`]).
 //!
 //! The tetrahedra are those of a lattice ([`contour`]), or of any mesh whose nodes are marked or bear values ([`contour_tetrahedra`]).
+//! [`contour_field`] extracts any [`Field`](crate::field::Field), with its sharp edges.
 //!
 //! ```
 //! use zeroset::contour::{ContourParams, LeastCurvature, Nodes, Placement, contour_tetrahedra};
@@ -42,6 +43,7 @@ mod cells;
 mod chain;
 mod clip;
 mod dual;
+mod of_field;
 mod outline;
 pub mod placement;
 mod rings;
@@ -56,6 +58,7 @@ mod tests;
 
 pub(crate) use clip::{HalfSpace, clip};
 pub use dual::{ContourParams, ContourReport, contour, contour_with};
+pub use of_field::{FieldContourError, FieldContourParams, FieldContourReport, contour_field};
 pub use outline::ColumnOutline;
 pub use placement::{Candidates, LeastCurvature, Norm, Placement, PlacementReport, Sweep};
 pub use sharp::SharpReport;

@@ -188,6 +188,24 @@ fn distances_are_those_to_the_surface() {
 }
 
 #[test]
+fn extents_hold_the_surface() {
+    for field in every_field() {
+        let Some([low, high]) = field.extent() else { continue };
+        let mut rng = Pcg64Mcg::seed_from_u64(9);
+        for _ in 0..20_000 {
+            let p = position(&mut rng, 2.5);
+            if (0..3).all(|a| low[a] <= p[a] && p[a] <= high[a]) {
+                continue;
+            }
+            // Outside the sign is the same on the whole way to far away.
+            let q = p.map(|c| 10.0 * c);
+            let is_beyond = (0..3).any(|a| (p[a] < low[a] && p[a] < 0.0) || (p[a] > high[a] && p[a] > 0.0));
+            assert!(!is_beyond || (field.value(p) < 0.0) == (field.value(q) < 0.0), "{p:?} of {field:?}");
+        }
+    }
+}
+
+#[test]
 fn signs_are_right() {
     let inside: Vec<(Any, [f64; 3], bool)> = vec![
         (Arc::new(prism()), [-0.7, 0.8, 0.0], true),

@@ -52,8 +52,8 @@ pub(super) fn sheets(
     let mut sheets: Vec<Sheet> = (0..planes.len())
         .into_par_iter()
         .map(|v| match planes[v] {
-            Some(i) => Sheet { plane: Some(i), flat: flat_of(i) },
-            None => Sheet { plane: None, flat: Flat::through(sides.normals[v], mesh.vertices[v]) },
+            Some(i) => Sheet { plane: Some(i), is_flat: true, flat: flat_of(i) },
+            None => Sheet { plane: None, is_flat: false, flat: Flat::through(sides.normals[v], mesh.vertices[v]) },
         })
         .collect();
     let choices: Vec<(u32, Vec<Choice>)> = sides
@@ -61,7 +61,7 @@ pub(super) fn sheets(
         .par_iter()
         .map(|&v| {
             let on_planes = own(v).into_iter().filter_map(|candidate| {
-                let sheet = Sheet { plane: candidate.plane, flat: flat_of(candidate.plane?) };
+                let sheet = Sheet { plane: candidate.plane, is_flat: true, flat: flat_of(candidate.plane?) };
                 Some(Choice { sheet, cost: candidate.cost })
             });
             (v, on_planes.chain(sides.around(v)).collect())
@@ -173,7 +173,7 @@ impl<'a> Sides<'a> {
             if let Some(flat) = flat {
                 let beyond = (distance_squared.sqrt() / cell - NEAR).max(0.0);
                 let cost = (flat.distance(p) / cell).powi(2) + beyond * beyond;
-                sides.push(Choice { sheet: Sheet { plane: None, flat }, cost });
+                sides.push(Choice { sheet: Sheet { plane: None, is_flat: false, flat }, cost });
             }
         }
         sides

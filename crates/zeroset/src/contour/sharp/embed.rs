@@ -9,8 +9,8 @@ use crate::mesh::{Mesh, Projection, overlapping_pairs, projections};
 use crate::spatial::TriangleTree;
 use crate::vec3::{self, Vec3};
 
-/// Vertices that moved farther than this, in cells, may have brought triangles together.
-const MOVED: f64 = 0.2;
+/// Vertices that moved farther than this, in cells, may have brought triangles together; by experience the others hardly do.
+pub(super) const MOVED: f64 = 0.2;
 /// Rings of triangles around these that they are held against.
 const RINGS: usize = 2;
 /// The most rounds of taking back.
@@ -43,10 +43,11 @@ impl Raster {
 /// Puts the vertices on a raster, and takes them back until no triangles that moved cut through each other or have no area; the
 /// number of vertices taken back, and of pairs that are left.
 ///
-/// The vertices from `inserted` on were put in; `origins` are the places on F, on the raster.
-pub(super) fn embed(mesh: &mut Mesh, inserted: usize, origins: &[Vec3], raster: Raster, cell: f64) -> (usize, u64) {
+/// The vertices from `inserted` on were put in; `origins` are the places on F, on the raster. Looked at are triangles with vertices that were put in,
+/// or moved farther than `moved`.
+pub(super) fn embed(mesh: &mut Mesh, inserted: usize, origins: &[Vec3], raster: Raster, moved: f64) -> (usize, u64) {
     mesh.vertices.par_iter_mut().for_each(|v| *v = raster.nearest(*v));
-    let mut part = Part::new(mesh, inserted, origins, cell);
+    let mut part = Part::new(mesh, inserted, origins, moved);
     let mut times = vec![0_u8; mesh.vertices.len()];
     let is_done = |times: &[u8], v: u32| usize::from(times[v as usize]) == SHARES.len();
     let mut rings = 1;
@@ -92,9 +93,9 @@ struct Part {
 }
 
 impl Part {
-    fn new(mesh: &Mesh, inserted: usize, origins: &[Vec3], cell: f64) -> Self {
+    fn new(mesh: &Mesh, inserted: usize, origins: &[Vec3], moved: f64) -> Self {
         let has_moved =
-            |v: usize| v >= inserted || vec3::distance_squared(mesh.vertices[v], origins[v]) > (MOVED * cell).powi(2);
+            |v: usize| v >= inserted || vec3::distance_squared(mesh.vertices[v], origins[v]) > moved * moved;
         let mut is_near: Vec<bool> = (0..mesh.vertices.len()).into_par_iter().map(has_moved).collect();
         let touches = |is_near: &[bool], corners: &[u32; 3]| corners.iter().any(|&v| is_near[v as usize]);
         let asked = is_near.clone();

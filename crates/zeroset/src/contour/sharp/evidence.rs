@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use super::Known;
 use super::creases::{Crossing, crossings};
+use super::insert;
 use super::sheets::Sheets;
 use super::stars::Stars;
 use crate::mesh::Mesh;
@@ -198,7 +199,8 @@ fn how_they_run(mesh: &Mesh, sheets: &Sheets, cell: f64, crossings: &[Crossing],
         .par_iter()
         .map(|crossing| {
             let ends = crossing.ends.map(|v| mesh.vertices[v as usize]);
-            let (_, place, direction) = super::insert::crossing(ends, crossing.ends.map(|v| sheets.of(v).flat), cell)?;
+            let (_, place, direction) =
+                insert::crossing(ends, crossing.ends.map(|v| sheets.of(v).flat), insert::REACH * cell)?;
             Some((place, direction))
         })
         .collect();

@@ -11,8 +11,9 @@ use crate::vec3::{self, Vec3};
 
 /// Sheets meet in a crease from this angle on; its sine.
 const LEAST_SINE: f64 = 0.12;
-/// How far from its edge a vertex may come to lie, in cells.
-const REACH: f64 = 1.8;
+
+/// How far F rounds edges off at most, in cells.
+pub(super) const REACH: f64 = 1.8;
 
 /// A mesh with its creases.
 pub(super) struct Inserted {
@@ -22,14 +23,16 @@ pub(super) struct Inserted {
     pub(super) facing: Vec<[f32; 3]>,
     /// Where each vertex is on the surface of F.
     pub(super) origins: Vec<Vec3>,
+    /// The vertices between which each new one was put in, three at a corner; else the last is `u32::MAX`.
+    pub(super) between: Vec<[u32; 3]>,
 }
 
-/// Puts vertices on their sheets and makes mesh edges along the creases.
-pub(super) fn insert_creases(mesh: &mut Mesh, sheets: &Sheets, cell: f64) -> Inserted {
+/// Puts vertices on their sheets and makes mesh edges along the creases, where these are no farther than `reach` from the mesh.
+pub(super) fn insert_creases(mesh: &mut Mesh, sheets: &Sheets, reach: f64) -> Inserted {
     let count = mesh.vertices.len() as u32;
     let seat = |v: u32| {
         let sheet = sheets.of(v);
-        if sheet.plane.is_some() { Seat::On(sheet.flat) } else { Seat::Loose }
+        if sheet.is_flat { Seat::On(sheet.flat) } else { Seat::Loose }
     };
     let mut seats: Vec<Seat> = (0..count).into_par_iter().map(seat).collect();
     let foot = |v: u32| sheets.of(v).flat.foot(mesh.vertices[v as usize]);
@@ -37,13 +40,15 @@ pub(super) fn insert_creases(mesh: &mut Mesh, sheets: &Sheets, cell: f64) -> Ins
     let mut origins = std::mem::take(&mut mesh.vertices);
     // The new vertex of each side of a triangle that crosses a crease.
     let mut cuts: Vec<(u32, u32)> = Vec::new();
+    let mut between = Vec::new();
     for Crossing { ends, sides } in crossings(mesh, sheets) {
         let flats = ends.map(|v| sheets.of(v).flat);
-        let Some((share, position, direction)) = crossing(ends.map(|v| origins[v as usize]), flats, cell) else {
+        let Some((share, position, direction)) = crossing(ends.map(|v| origins[v as usize]), flats, reach) else {
             continue;
         };
         let number = vertices.len() as u32;
         vertices.push(position);
+        between.push([ends[0], ends[1], u32::MAX]);
         origins.push(vec3::lerp(origins[ends[0] as usize], origins[ends[1] as usize], share));
         seats.push(Seat::Along(position, direction));
         cuts.extend([(sides[0], number), (sides[1], number)]);
@@ -75,11 +80,12 @@ pub(super) fn insert_creases(mesh: &mut Mesh, sheets: &Sheets, cell: f64) -> Ins
                 let mean = |of: [Vec3; 3]| vec3::scale(vec3::add(of[0], vec3::add(of[1], of[2])), 1.0 / 3.0);
                 let origin = mean(corners.map(|v| origins[v as usize]));
                 let centre = vertices.len() as u32;
-                let (position, seat) = match corner(corners.map(|v| sheets.of(v).flat), origin, cell) {
+                let (position, seat) = match corner(corners.map(|v| sheets.of(v).flat), origin, reach) {
                     Some(position) => (position, Seat::At),
                     None => (mean(cut.map(|v| v.map_or(origin, |v| vertices[v as usize]))), Seat::Loose),
                 };
                 vertices.push(position);
+                between.push(*corners);
                 origins.push(origin);
                 seats.push(seat);
                 for side in 0..3 {
@@ -93,11 +99,11 @@ pub(super) fn insert_creases(mesh: &mut Mesh, sheets: &Sheets, cell: f64) -> Ins
     }
     mesh.vertices = vertices;
     mesh.triangles = triangles;
-    Inserted { seats, facing, origins }
+    Inserted { seats, facing, origins, between }
 }
 
 /// Where a mesh edge meets the line of two sheets: the share of the edge before it, the position, and the line's direction.
-pub(super) fn crossing(ends: [Vec3; 2], flats: [Flat; 2], cell: f64) -> Option<(f64, Vec3, Vec3)> {
+pub(super) fn crossing(ends: [Vec3; 2], flats: [Flat; 2], reach: f64) -> Option<(f64, Vec3, Vec3)> {
     let across = vec3::cross(flats[0].normal, flats[1].normal);
     let sine = vec3::norm(across);
     if sine < LEAST_SINE {
@@ -108,7 +114,7 @@ pub(super) fn crossing(ends: [Vec3; 2], flats: [Flat; 2], cell: f64) -> Option<(
     let t = if excess[0] < 0.0 && excess[1] > 0.0 { excess[0] / (excess[0] - excess[1]) } else { 0.5 };
     let middle = vec3::lerp(ends[0], ends[1], t);
     let position = meet(&flats, middle, 0.01);
-    (vec3::distance(position, middle) < REACH * cell).then(|| (t, position, vec3::scale(across, 1.0 / sine)))
+    (vec3::distance(position, middle) < reach).then(|| (t, position, vec3::scale(across, 1.0 / sine)))
 }
 
 /// The position nearest to `from` that lies on all planes, as far as they differ enough for their common normals to count.
@@ -131,13 +137,13 @@ fn meet(flats: &[Flat], from: Vec3, least: f64) -> Vec3 {
 }
 
 /// Where three sheets meet.
-fn corner(flats: [Flat; 3], middle: Vec3, cell: f64) -> Option<Vec3> {
+fn corner(flats: [Flat; 3], middle: Vec3, reach: f64) -> Option<Vec3> {
     let [a, b, c] = flats.map(|f| f.normal);
     if vec3::dot(a, vec3::cross(b, c)).abs() < 0.05 {
         return None;
     }
     let position = meet(&flats, middle, 1e-4);
-    (vec3::distance(position, middle) < REACH * cell).then_some(position)
+    (vec3::distance(position, middle) < reach).then_some(position)
 }
 
 fn split_in_two(corners: [u32; 3], cut: [Option<u32>; 3], mut emit: impl FnMut([u32; 3], u32)) {

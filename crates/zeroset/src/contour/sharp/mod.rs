@@ -39,6 +39,7 @@ mod curved;
 mod embed;
 mod evidence;
 mod insert;
+mod of_field;
 mod settle;
 mod sheets;
 mod stars;
@@ -55,6 +56,7 @@ use crate::mesh::Mesh;
 use crate::spatial::PointTree;
 use crate::vec3::Vec3;
 use embed::Raster;
+pub(crate) use of_field::{Sharpened, sharpen_field};
 use stars::{Fans, Stars};
 
 /// What the surface is known to be.
@@ -117,7 +119,7 @@ pub(crate) fn sharpen(mesh: &mut Mesh, known: &Known) -> SharpReport {
     let on_planes = (0..mesh.vertices.len() as u32).filter(|&v| sheets.of(v).plane.is_some()).count();
     let first = mesh.vertices.len();
     let raster = Raster::new(mesh);
-    let mut inserted = insert::insert_creases(mesh, &sheets, known.cell);
+    let mut inserted = insert::insert_creases(mesh, &sheets, insert::REACH * known.cell);
     drop(sheets);
     let on_creases = inserted.seats.iter().filter(|s| matches!(s, Seat::Along(..))).count();
     let at_corners = inserted.seats.iter().filter(|s| matches!(s, Seat::At)).count();
@@ -125,7 +127,7 @@ pub(crate) fn sharpen(mesh: &mut Mesh, known: &Known) -> SharpReport {
     let fans = Fans::new(mesh);
     settle::settle(mesh, &fans, &inserted, known.curved_creases);
     let folded = tidy::tidy(mesh, fans, &mut inserted, known.cell);
-    let (taken_back, intersections) = embed::embed(mesh, first, &inserted.origins, raster, known.cell);
+    let (taken_back, intersections) = embed::embed(mesh, first, &inserted.origins, raster, embed::MOVED * known.cell);
     let (crease_length, crease_angle) = creases::measure(mesh, &inserted.seats);
     super::clip::drop_unused(mesh);
     SharpReport { on_planes, on_creases, at_corners, crease_length, crease_angle, folded, taken_back, intersections }

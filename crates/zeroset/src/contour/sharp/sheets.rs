@@ -43,8 +43,10 @@ pub(super) struct Candidate {
 /// The sheet of a vertex.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Sheet {
-    /// The plane, unless the vertex is on a curved part.
+    /// The plane, or another sheet with a number; `None` on a curved part.
     pub(super) plane: Option<u32>,
+    /// Whether it lies in a plane.
+    pub(super) is_flat: bool,
     /// The plane, or the tangent plane of the curved part.
     pub(super) flat: Flat,
 }
@@ -69,6 +71,11 @@ pub(super) struct Sheets {
 }
 
 impl Sheets {
+    /// Sheets that are known.
+    pub(super) fn given(of: Vec<Sheet>) -> Self {
+        Self { of, curved_creases: true }
+    }
+
     /// The sheet of a vertex.
     pub(super) fn of(&self, v: u32) -> &Sheet {
         &self.of[v as usize]
@@ -95,8 +102,8 @@ pub(super) fn sheets(mesh: &Mesh, stars: &Stars, known: &Known) -> Sheets {
     agree(&mut planes, &contested, stars);
     let flat_of = |i: u32| known.facets.flats[i as usize];
     let sheet = |v: usize, normal: Vec3| match planes[v] {
-        Some(i) => Sheet { plane: Some(i), flat: flat_of(i) },
-        None => Sheet { plane: None, flat: Flat::through(normal, mesh.vertices[v]) },
+        Some(i) => Sheet { plane: Some(i), is_flat: true, flat: flat_of(i) },
+        None => Sheet { plane: None, is_flat: false, flat: Flat::through(normal, mesh.vertices[v]) },
     };
     let of = if known.curved_creases {
         let own = |v: u32| match contested.binary_search_by_key(&v, |c| c.vertex) {
@@ -113,7 +120,7 @@ pub(super) fn sheets(mesh: &Mesh, stars: &Stars, known: &Known) -> Sheets {
     for (v, share) in unproven(mesh, stars, known, &sheets) {
         let (p, normal) = (mesh.vertices[v as usize], normals[v as usize]);
         let position = vec3::lerp(p, sheets.of(v).flat.foot(p), share);
-        sheets.of[v as usize] = Sheet { plane: None, flat: Flat::through(normal, position) };
+        sheets.of[v as usize] = Sheet { plane: None, is_flat: false, flat: Flat::through(normal, position) };
     }
     blend(mesh, stars, &mut sheets, borders);
     sheets
@@ -138,7 +145,7 @@ fn blend(mesh: &Mesh, stars: &Stars, sheets: &mut Sheets, mut ring: Vec<u32>) {
         ring.retain(|&v| !std::mem::replace(&mut is_blended[v as usize], true));
         let mut next = Vec::new();
         for &v in &ring {
-            let Sheet { plane, flat } = *sheets.of(v);
+            let Sheet { plane, flat, .. } = *sheets.of(v);
             next.extend(stars.around(v).iter().copied().filter(|&u| sheets.of(u).plane == plane));
             let p = mesh.vertices[v as usize];
             let position = vec3::lerp(p, flat.foot(p), step as f64 / (BLENDED + 1) as f64);

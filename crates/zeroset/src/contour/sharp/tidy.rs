@@ -206,7 +206,10 @@ impl Patchwork<'_> {
         let p = self.vertices[to as usize];
         let near = ON * self.cell;
         match self.seats[from as usize] {
-            Seat::At => false,
+            // Two triangles may have found the same corner.
+            Seat::At => {
+                matches!(self.seats[to as usize], Seat::At) && vec3::distance(p, self.vertices[from as usize]) < near
+            }
             Seat::Along(origin, direction) => {
                 matches!(self.seats[to as usize], Seat::Along(..) | Seat::At)
                     && vec3::norm(vec3::cross(vec3::sub(p, origin), direction)) < near

@@ -68,10 +68,19 @@ impl Placed {
         (self.rotation * Vector3::from(v)).into()
     }
 
-    /// The box around a box that is turned by a function.
-    fn around(low: Vec3, high: Vec3, to: impl Fn(Vec3) -> Vec3) -> [Vec3; 2] {
-        let corner = |k: usize| to(std::array::from_fn(|a| if k >> a & 1 == 1 { high[a] } else { low[a] }));
-        (1..8).fold([corner(0); 2], |[low, high], k| [vec3::min(low, corner(k)), vec3::max(high, corner(k))])
+    /// The box around a box that was turned forth, or back.
+    fn turned_box(&self, low: Vec3, high: Vec3, back: bool) -> [Vec3; 2] {
+        let half = vec3::scale(vec3::sub(high, low), 0.5);
+        let middle = vec3::lerp(low, high, 0.5);
+        let r = self.rotation.matrix();
+        let reach: Vec3 =
+            std::array::from_fn(|i| (0..3).map(|j| half[j] * if back { r[(j, i)] } else { r[(i, j)] }.abs()).sum());
+        let (middle, reach) = if back {
+            (self.back(middle), vec3::scale(reach, 1.0 / self.scale))
+        } else {
+            (vec3::add(vec3::scale(self.forth(middle), self.scale), self.shift), vec3::scale(reach, self.scale))
+        };
+        [vec3::sub(middle, reach), vec3::add(middle, reach)]
     }
 }
 
@@ -93,7 +102,7 @@ impl Field for Placed {
     }
 
     fn bounds(&self, low: [f64; 3], high: [f64; 3]) -> Interval {
-        let [a, b] = Self::around(low, high, |p| self.back(p));
+        let [a, b] = self.turned_box(low, high, true);
         let most = a.iter().chain(&b).fold(0.0_f64, |most, c| most.max(c.abs()));
         let rounding = 1e-13
             * low.iter().chain(&high).chain(&self.shift).fold(most * self.scale, |m, c| m.max(c.abs()))
@@ -103,7 +112,7 @@ impl Field for Placed {
 
     fn extent(&self) -> Option<[[f64; 3]; 2]> {
         let [low, high] = self.field.extent()?;
-        Some(Self::around(low, high, |p| vec3::add(vec3::scale(self.forth(p), self.scale), self.shift)))
+        Some(self.turned_box(low, high, false))
     }
 
     fn sheets(&self) -> u32 {
