@@ -39,31 +39,6 @@ impl Interval {
         Self { low: self.low.max(other.low), high: self.high.max(other.high) }
     }
 
-    /// The absolute values.
-    #[must_use]
-    pub fn abs(self) -> Self {
-        if self.low >= 0.0 {
-            self
-        } else if self.high <= 0.0 {
-            -self
-        } else {
-            Self { low: 0.0, high: self.high.max(-self.low) }
-        }
-    }
-
-    /// What is in either, or between.
-    #[must_use]
-    pub fn hull(self, other: Self) -> Self {
-        Self { low: self.low.min(other.low), high: self.high.max(other.high) }
-    }
-
-    /// What is in both; one of them where rounding has parted them.
-    #[must_use]
-    pub fn and(self, other: Self) -> Self {
-        let both = Self { low: self.low.max(other.low), high: self.high.min(other.high) };
-        if both.low <= both.high { both } else { self }
-    }
-
     /// All numbers times a positive one.
     #[must_use]
     pub fn times(self, factor: f64) -> Self {

@@ -32,20 +32,14 @@ pub(crate) fn sharpen_field(mesh: &mut Mesh, field: &dyn Field, cell: f64) -> Sh
     let raster = Raster::new(mesh);
     let first = mesh.vertices.len();
     let numbers: Vec<u32> = mesh.vertices.par_iter().map(|&p| field.sheet(p)).collect();
-    let tangent = |(&p, &number): (&Vec3, &u32)| {
-        let foot = meet(field, &[number], p, cell).unwrap_or(p);
+    let foot = |(&p, &number): (&Vec3, &u32)| meet(field, &[number], p, cell).unwrap_or(p);
+    let feet: Vec<Vec3> = mesh.vertices.par_iter().zip(&numbers).map(foot).collect();
+    let tangent = |(&foot, &number): (&Vec3, &u32)| {
         let (_, gradient) = field.on_sheet(number, foot);
         let normal = vec3::normalized(gradient).unwrap_or([0.0, 0.0, 1.0]);
         Sheet { plane: Some(number), is_flat: field.is_flat(number), flat: Flat::through(normal, foot) }
     };
-    let sheets = Sheets::given(mesh.vertices.par_iter().zip(&numbers).map(tangent).collect());
-    let feet: Vec<Vec3> = (0..first as u32)
-        .into_par_iter()
-        .map(|v| {
-            let p = mesh.vertices[v as usize];
-            meet(field, &[numbers[v as usize]], p, cell).unwrap_or(p)
-        })
-        .collect();
+    let sheets = Sheets::given(feet.par_iter().zip(&numbers).map(tangent).collect());
     let mut inserted = insert_creases(mesh, &sheets, REACH * cell);
     drop(sheets);
     mesh.vertices[..first].copy_from_slice(&feet);

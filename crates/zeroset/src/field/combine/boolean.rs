@@ -5,16 +5,18 @@ use std::sync::Arc;
 use crate::field::{Field, FieldError, Interval, Metric};
 use crate::vec3;
 
-/// The sheets of operands, one after the other.
+/// The operand that counts at each position: the one with the least value, or the greatest. Their sheets are numbered one after the other.
 #[derive(Debug)]
-struct Operands {
+struct Choice {
     all: Vec<Arc<dyn Field>>,
     /// The number of the first sheet of each.
     first: Vec<u32>,
+    /// 1 for the least value, -1 for the greatest.
+    sign: f64,
 }
 
-impl Operands {
-    fn new(all: Vec<Arc<dyn Field>>) -> Self {
+impl Choice {
+    fn new(all: Vec<Arc<dyn Field>>, sign: f64) -> Self {
         let mut next = 0;
         let first = all
             .iter()
@@ -24,19 +26,19 @@ impl Operands {
                 own
             })
             .collect();
-        Self { all, first }
+        Self { all, first, sign }
     }
 
-    /// The operand with the least value, the first of equals.
-    fn least(&self, p: [f64; 3], sign: f64) -> (usize, f64) {
+    /// The operand that counts, the first of equals, and its value.
+    fn counting(&self, p: [f64; 3]) -> (usize, f64) {
         let mut best = (0, f64::INFINITY);
         for (i, field) in self.all.iter().enumerate() {
-            let value = sign * field.value(p);
+            let value = self.sign * field.value(p);
             if value < best.1 || i == 0 {
                 best = (i, value);
             }
         }
-        best
+        (best.0, self.sign * best.1)
     }
 
     /// The operand that a sheet belongs to, and its number there.
@@ -45,8 +47,21 @@ impl Operands {
         (&*self.all[i], sheet - self.first[i])
     }
 
-    fn sheets(&self) -> u32 {
-        self.first.last().copied().unwrap_or(0) + self.all.last().map_or(0, |field| field.sheets())
+    /// The box around the surfaces of all operands.
+    fn hull(&self) -> Option<[[f64; 3]; 2]> {
+        let mut all = self.all.iter().map(|field| field.extent());
+        let first = all.next()??;
+        all.try_fold(first, |[low, high], own| own.map(|own| [vec3::min(low, own[0]), vec3::max(high, own[1])]))
+    }
+}
+
+impl Field for Choice {
+    fn value(&self, p: [f64; 3]) -> f64 {
+        self.counting(p).1
+    }
+
+    fn gradient(&self, p: [f64; 3]) -> [f64; 3] {
+        self.all[self.counting(p).0].gradient(p)
     }
 
     fn metric(&self) -> Metric {
@@ -56,11 +71,46 @@ impl Operands {
     fn lipschitz(&self) -> f64 {
         self.all.iter().map(|field| field.lipschitz()).fold(0.0, f64::max)
     }
+
+    fn bounds(&self, low: [f64; 3], high: [f64; 3]) -> Interval {
+        let all = self.all.iter().map(|field| field.bounds(low, high));
+        let choose = if self.sign > 0.0 { Interval::min } else { Interval::max };
+        all.reduce(choose).unwrap_or(Interval::ALL)
+    }
+
+    fn extent(&self) -> Option<[[f64; 3]; 2]> {
+        if self.sign > 0.0 {
+            return self.hull();
+        }
+        // The surface lies in what is solid of each operand; one whose surface has a box may still be solid all around it.
+        let boxes = self.all.iter().filter(|field| is_bounded(&***field)).filter_map(|field| field.extent());
+        let solid = boxes.reduce(|a, b| [vec3::max(a[0], b[0]), vec3::min(a[1], b[1])]);
+        solid.map(|[low, high]| [low, vec3::max(low, high)]).or_else(|| self.hull())
+    }
+
+    fn sheets(&self) -> u32 {
+        self.first.last().copied().unwrap_or(0) + self.all.last().map_or(0, |field| field.sheets())
+    }
+
+    fn sheet(&self, p: [f64; 3]) -> u32 {
+        let (i, _) = self.counting(p);
+        self.first[i] + self.all[i].sheet(p)
+    }
+
+    fn on_sheet(&self, sheet: u32, p: [f64; 3]) -> (f64, [f64; 3]) {
+        let (field, sheet) = self.of_sheet(sheet);
+        field.on_sheet(sheet, p)
+    }
+
+    fn is_flat(&self, sheet: u32) -> bool {
+        let (field, sheet) = self.of_sheet(sheet);
+        field.is_flat(sheet)
+    }
 }
 
 /// All that lies in one operand or more: the least of the values.
 #[derive(Debug)]
-pub struct Union(Operands);
+pub struct Union(Choice);
 
 impl Union {
     /// The union of some fields.
@@ -71,61 +121,15 @@ impl Union {
         if operands.is_empty() {
             return Err(FieldError::Empty("a union of nothing: give an operand or more"));
         }
-        Ok(Self(Operands::new(operands)))
+        Ok(Self(Choice::new(operands, 1.0)))
     }
 }
 
-impl Field for Union {
-    fn value(&self, p: [f64; 3]) -> f64 {
-        self.0.least(p, 1.0).1
-    }
-
-    fn gradient(&self, p: [f64; 3]) -> [f64; 3] {
-        self.0.all[self.0.least(p, 1.0).0].gradient(p)
-    }
-
-    fn metric(&self) -> Metric {
-        self.0.metric()
-    }
-
-    fn lipschitz(&self) -> f64 {
-        self.0.lipschitz()
-    }
-
-    fn bounds(&self, low: [f64; 3], high: [f64; 3]) -> Interval {
-        let all = self.0.all.iter().map(|field| field.bounds(low, high));
-        all.reduce(Interval::min).unwrap_or(Interval::ALL)
-    }
-
-    fn extent(&self) -> Option<[[f64; 3]; 2]> {
-        let mut all = self.0.all.iter().map(|field| field.extent());
-        let first = all.next()??;
-        all.try_fold(first, |[low, high], own| own.map(|own| [vec3::min(low, own[0]), vec3::max(high, own[1])]))
-    }
-
-    fn sheets(&self) -> u32 {
-        self.0.sheets()
-    }
-
-    fn sheet(&self, p: [f64; 3]) -> u32 {
-        let (i, _) = self.0.least(p, 1.0);
-        self.0.first[i] + self.0.all[i].sheet(p)
-    }
-
-    fn on_sheet(&self, sheet: u32, p: [f64; 3]) -> (f64, [f64; 3]) {
-        let (field, sheet) = self.0.of_sheet(sheet);
-        field.on_sheet(sheet, p)
-    }
-
-    fn is_flat(&self, sheet: u32) -> bool {
-        let (field, sheet) = self.0.of_sheet(sheet);
-        field.is_flat(sheet)
-    }
-}
+super::forwarded!(Union);
 
 /// What lies in all operands: the greatest of the values.
 #[derive(Debug)]
-pub struct Intersection(Operands);
+pub struct Intersection(Choice);
 
 impl Intersection {
     /// The intersection of some fields.
@@ -136,62 +140,11 @@ impl Intersection {
         if operands.is_empty() {
             return Err(FieldError::Empty("an intersection of nothing: give an operand or more"));
         }
-        Ok(Self(Operands::new(operands)))
+        Ok(Self(Choice::new(operands, -1.0)))
     }
 }
 
-impl Field for Intersection {
-    fn value(&self, p: [f64; 3]) -> f64 {
-        -self.0.least(p, -1.0).1
-    }
-
-    fn gradient(&self, p: [f64; 3]) -> [f64; 3] {
-        self.0.all[self.0.least(p, -1.0).0].gradient(p)
-    }
-
-    fn metric(&self) -> Metric {
-        self.0.metric()
-    }
-
-    fn lipschitz(&self) -> f64 {
-        self.0.lipschitz()
-    }
-
-    fn bounds(&self, low: [f64; 3], high: [f64; 3]) -> Interval {
-        let all = self.0.all.iter().map(|field| field.bounds(low, high));
-        all.reduce(Interval::max).unwrap_or(Interval::ALL)
-    }
-
-    fn extent(&self) -> Option<[[f64; 3]; 2]> {
-        // The surface lies in what is solid of each operand; one whose surface has a box may still be solid all around it.
-        let boxes = self.0.all.iter().filter(|field| is_bounded(&***field)).filter_map(|field| field.extent());
-        let solid = boxes.reduce(|a, b| [vec3::max(a[0], b[0]), vec3::min(a[1], b[1])]);
-        solid.map(|[low, high]| [low, vec3::max(low, high)]).or_else(|| {
-            let mut all = self.0.all.iter().map(|field| field.extent());
-            let first = all.next()??;
-            all.try_fold(first, |[low, high], own| own.map(|own| [vec3::min(low, own[0]), vec3::max(high, own[1])]))
-        })
-    }
-
-    fn sheets(&self) -> u32 {
-        self.0.sheets()
-    }
-
-    fn sheet(&self, p: [f64; 3]) -> u32 {
-        let (i, _) = self.0.least(p, -1.0);
-        self.0.first[i] + self.0.all[i].sheet(p)
-    }
-
-    fn on_sheet(&self, sheet: u32, p: [f64; 3]) -> (f64, [f64; 3]) {
-        let (field, sheet) = self.0.of_sheet(sheet);
-        field.on_sheet(sheet, p)
-    }
-
-    fn is_flat(&self, sheet: u32) -> bool {
-        let (field, sheet) = self.0.of_sheet(sheet);
-        field.is_flat(sheet)
-    }
-}
+super::forwarded!(Intersection);
 
 /// Whether nothing solid lies outside of the box of a field's surface.
 fn is_bounded(field: &dyn Field) -> bool {
@@ -259,13 +212,13 @@ impl Field for Complement {
 
 /// What lies in one field and not in another.
 #[derive(Debug)]
-pub struct Difference(Intersection);
+pub struct Difference(Choice);
 
 impl Difference {
     /// What lies in `base` and not in `cut`.
     #[must_use]
     pub fn new(base: Arc<dyn Field>, cut: Arc<dyn Field>) -> Self {
-        Self(Intersection(Operands::new(vec![base, Arc::new(Complement::new(cut))])))
+        Self(Choice::new(vec![base, Arc::new(Complement::new(cut))], -1.0))
     }
 }
 
