@@ -17,6 +17,7 @@ pub mod feature;
 pub mod field;
 pub mod fit;
 pub mod mesh;
+pub mod model;
 pub mod monitor;
 pub mod reconstruct;
 pub mod sample;

@@ -7,8 +7,8 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use zeroset::contour::{FieldContourError, FieldContourParams, FieldContourReport, contour_field};
 use zeroset::field::{
-    Ball, Complement, Cuboid, Difference, Field, Frustum, HalfSpace, Intersection, MeshSolid, Offset, Placed, Prism,
-    Shell, SmoothUnion, Union,
+    Ball, Complement, Cuboid, Difference, Field, Frustum, HalfSpace, Intersection, MeshSolid, Offset, Placed,
+    Placement, Prism, Shell, SmoothUnion, Union,
 };
 use zeroset::mesh::{Mesh, self_intersections, topology};
 use zeroset::spatial::TriangleTree;
@@ -100,7 +100,8 @@ fn turned(rng: &mut Pcg64Mcg, half: Vec3, middle: Vec3) -> Turned {
         add(part, middle, 1.0)
     };
     let brick: Any = Arc::new(Cuboid::new(half.map(|h| -h), half).unwrap());
-    let field = Arc::new(Placed::new(brick).turned(axis, angle).unwrap().moved(middle).unwrap());
+    let placement = Placement::default().turned(axis, angle, [0.0; 3]).unwrap().moved(middle).unwrap();
+    let field = Arc::new(Placed::new(brick, placement));
     let corners: [Vec3; 8] =
         std::array::from_fn(|k| rotate(std::array::from_fn(|a| if k >> a & 1 == 1 { half[a] } else { -half[a] })));
     let faces = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
@@ -202,7 +203,8 @@ fn eight_boxes() {
         let middle = [(k as f64 * PI / 4.0).cos(), (k as f64 * PI / 4.0).sin(), 0.0];
         let own: Any =
             Arc::new(Cuboid::new([-0.18, -0.62, -0.2 - 0.05 * k as f64], [0.18, 0.62, 0.2 + 0.06 * k as f64]).unwrap());
-        Arc::new(Placed::new(own).turned([0.0, 0.0, 1.0], k as f64 * PI / 4.0).unwrap().moved(middle).unwrap())
+        let placement = Placement::default().turned([0.0, 0.0, 1.0], k as f64 * PI / 4.0, [0.0; 3]).unwrap();
+        Arc::new(Placed::new(own, placement.moved(middle).unwrap()))
     };
     let ring = Union::new((0..8).map(brick).collect()).unwrap();
     // By layers: the areas of the plan, counted finely, times their heights.

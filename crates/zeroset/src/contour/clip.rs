@@ -7,17 +7,17 @@ use crate::vec3::{self, Vec3};
 
 /// A half-space: the positions x with `normal . x <= offset`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct HalfSpace {
+struct HalfSpace {
     /// Unit normal, which points out of it.
-    pub(crate) normal: Vec3,
-    pub(crate) offset: f64,
+    normal: Vec3,
+    offset: f64,
 }
 
 /// Keeps the part of a mesh in a half-space and cuts the triangles across its face. Vertices within `snap` of the face are moved onto
 /// it, so that no needles are left. The mesh must have no attributes yet.
 ///
 /// O(V + F). A manifold mesh stays manifold.
-pub(crate) fn clip(mesh: &mut Mesh, half: HalfSpace, snap: f64) {
+fn clip(mesh: &mut Mesh, half: HalfSpace, snap: f64) {
     let mut beyond: Vec<f64> = mesh.vertices.iter().map(|v| vec3::dot(half.normal, *v) - half.offset).collect();
     if beyond.iter().all(|b| *b < -snap) {
         return;
@@ -62,6 +62,17 @@ pub(crate) fn clip(mesh: &mut Mesh, half: HalfSpace, snap: f64) {
     }
     mesh.triangles = triangles;
     drop_unused(mesh);
+}
+
+/// Keeps the part of a mesh within a box, seen along some axes.
+pub(crate) fn clip_at_box(mesh: &mut Mesh, [low, high]: [Vec3; 2], axes: std::ops::Range<usize>, snap: f64) {
+    for axis in axes {
+        for (sign, offset) in [(1.0, high[axis]), (-1.0, -low[axis])] {
+            let mut normal = [0.0; 3];
+            normal[axis] = sign;
+            clip(mesh, HalfSpace { normal, offset }, snap);
+        }
+    }
 }
 
 /// Drops vertices without triangles; the others keep their order.

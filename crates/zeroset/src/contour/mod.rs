@@ -51,17 +51,19 @@ mod sharp;
 pub mod simplicial;
 mod split;
 mod tetrahedra;
+mod thin;
 mod triangulate;
 
 #[cfg(test)]
 mod tests;
 
-pub(crate) use clip::{HalfSpace, clip};
+pub(crate) use clip::clip_at_box;
 pub use dual::{ContourParams, ContourReport, contour, contour_with};
 pub use of_field::{FieldContourError, FieldContourParams, FieldContourReport, contour_field};
+pub(crate) use of_field::{SNAP, lattice_around, sampled};
 pub use outline::ColumnOutline;
 pub use placement::{Candidates, LeastCurvature, Norm, Placement, PlacementReport, Sweep};
 pub use sharp::SharpReport;
-pub(crate) use sharp::{Known, sharpen};
+pub(crate) use sharp::{Known, sharpen, sharpen_field};
 pub use simplicial::{Branches, Polyline, zero_lines, zero_surface};
 pub use tetrahedra::{ContourError, Nodes, contour_tetrahedra};

@@ -3,9 +3,10 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::clip::{HalfSpace, clip};
+use super::clip::clip_at_box;
 use super::dual::contour;
-use super::sharp::{Sharpened, sharpen_field};
+use super::sharp::{FIELD_REACH, SharpReport, sharpen_field};
+use super::thin::blunt;
 use crate::domain::{BLOCK_NODES, Blocks, Lattice, LatticeError, Mask, block_key, block_of_key, dilate_box, mask_get};
 use crate::field::{Field, LatticeField};
 use crate::mesh::Mesh;
@@ -62,8 +63,10 @@ pub struct FieldContourReport {
 
 /// Lattice nodes come to lie this share of a cell off the corners of the box, in each direction: faces through nodes make needles.
 const OFF_CENTER: [f64; 3] = [0.137, 0.289, 0.411];
+/// Cells around the box.
+const MARGIN: f64 = 2.0;
 /// Vertices this near to the box, in cells, are moved onto it.
-const SNAP: f64 = 0.05;
+pub(crate) const SNAP: f64 = 0.05;
 
 /// Extracts the surface of a field.
 ///
@@ -108,8 +111,7 @@ pub fn contour_field(
             FieldContourError::NoSurface
         });
     }
-    let shifted = |p: [f64; 3], cells: f64| std::array::from_fn(|a| p[a] + (OFF_CENTER[a] + cells) * params.cell);
-    let lattice = Lattice::around(shifted(low, -1.0), shifted(high, 0.0), params.cell, 0.0)?;
+    let lattice = lattice_around([low, high], params.cell)?;
     monitor.stage("looking for the surface");
     let (sampled, looked_at) = sampled(field, lattice, monitor)?;
     let values = sampled.known.iter().flatten().map(|word| word.count_ones() as usize).sum();
@@ -123,14 +125,10 @@ pub fn contour_field(
     }
     check(monitor)?;
     monitor.stage("making edges sharp");
-    let Sharpened { on_creases, at_corners, folded, taken_back, intersections } =
-        sharpen_field(&mut mesh, field, params.cell);
+    let SharpReport { on_creases, at_corners, folded, taken_back, intersections, .. } =
+        sharpen_field(&mut mesh, field, &[], params.cell);
     if params.bounds.is_some() {
-        for (axis, (sign, offset)) in (0..3).flat_map(|a| [(a, (1.0, high[a])), (a, (-1.0, -low[a]))]) {
-            let mut normal = [0.0; 3];
-            normal[axis] = sign;
-            clip(&mut mesh, HalfSpace { normal, offset }, SNAP * params.cell);
-        }
+        clip_at_box(&mut mesh, [low, high], 0..3, SNAP * params.cell);
     }
     if mesh.triangles.is_empty() {
         return Err(FieldContourError::NoSurface);
@@ -138,8 +136,18 @@ pub fn contour_field(
     Ok((mesh, FieldContourReport { values, blocks, on_creases, at_corners, folded, taken_back, intersections }))
 }
 
-/// The values of a field at the nodes around its surface, and the number of cubes looked at to find it.
-fn sampled(field: &dyn Field, lattice: Lattice, monitor: &dyn Monitor) -> Result<(LatticeField, usize), Cancelled> {
+/// A lattice over a box that holds a surface.
+pub(crate) fn lattice_around([low, high]: [[f64; 3]; 2], cell: f64) -> Result<Lattice, LatticeError> {
+    let first = Lattice::new(std::array::from_fn(|a| low[a] + OFF_CENTER[a] * cell), cell, 0, [1; 3])?;
+    first.over(low.map(|c| c - MARGIN * cell), high.map(|c| c + MARGIN * cell))
+}
+
+/// The values of a field at the nodes around its surface, blunt where sheets meet at small angles, and the number of cubes looked at to find it.
+pub(crate) fn sampled(
+    field: &dyn Field,
+    lattice: Lattice,
+    monitor: &dyn Monitor,
+) -> Result<(LatticeField, usize), Cancelled> {
     let mut looked_at = 0;
     let [x, y, z] = lattice.blocks_at(0);
     let mut open: Vec<[u32; 3]> =
@@ -180,5 +188,8 @@ fn sampled(field: &dyn Field, lattice: Lattice, monitor: &dyn Monitor) -> Result
         })
     });
     let values: Vec<f32> = values.collect();
-    Ok((LatticeField::new(lattice, blocks, known, values), looked_at))
+    let reach = FIELD_REACH * lattice.spacing;
+    let mut sampled = LatticeField::new(lattice, blocks, known, values);
+    blunt(&mut sampled, field, reach);
+    Ok((sampled, looked_at))
 }

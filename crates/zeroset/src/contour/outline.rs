@@ -17,6 +17,8 @@ pub struct ColumnOutline {
 
 /// Most columns of the raster; a larger area is seen in coarser columns.
 const MAX_COLUMNS: f64 = 6.4e7;
+/// Most columns along a side: a strip is not all rim.
+const MOST_ALONG: f64 = 1e6;
 
 impl ColumnOutline {
     /// The outline of points, in columns of width `cell`, closed by `radius`. Both in the unit of the points.
@@ -30,7 +32,7 @@ impl ColumnOutline {
             }
         }
         let side = [high[0] - low[0] + 2.0 * radius, high[1] - low[1] + 2.0 * radius];
-        let cell = cell.max((side[0] * side[1] / MAX_COLUMNS).sqrt());
+        let cell = cell.max((side[0] * side[1] / MAX_COLUMNS).sqrt()).max(side[0].max(side[1]) / MOST_ALONG);
         let margin = (radius / cell).ceil() + 2.0;
         let low = low.map(|l| l - margin * cell);
         let size: [usize; 2] = std::array::from_fn(|a| ((high[a] - low[a]) / cell + margin + 2.0) as usize);

@@ -42,7 +42,53 @@ pub struct Blocks {
     pub neighbors: Vec<[u32; 27]>,
     /// Blocks along each axis of the whole level.
     pub extent: [u32; 3],
-    index: FxHashMap<u64, u32>,
+    index: Index,
+}
+
+/// The place of each block among those that are stored.
+#[derive(Debug, Clone)]
+enum Index {
+    /// An entry for every block of the level, x fastest.
+    Dense(Vec<u32>),
+    /// By key.
+    Sparse(FxHashMap<u64, u32>),
+}
+
+/// Levels of so many blocks at most have a dense index.
+const MOST_DENSE: u64 = 1 << 22;
+
+impl Default for Index {
+    fn default() -> Self {
+        Self::Dense(Vec::new())
+    }
+}
+
+impl Index {
+    fn new(keys: &[u64], coordinates: &[[u32; 3]], extent: [u32; 3]) -> Self {
+        let all = extent.iter().try_fold(1_u64, |all, &n| all.checked_mul(u64::from(n)));
+        let Some(all) = all.filter(|&all| all <= MOST_DENSE) else {
+            return Self::Sparse(keys.iter().enumerate().map(|(i, &k)| (k, i as u32)).collect());
+        };
+        let mut places = vec![NONE; all as usize];
+        for (i, c) in coordinates.iter().enumerate() {
+            places[dense_place(*c, extent)] = i as u32;
+        }
+        Self::Dense(places)
+    }
+
+    /// The place of a block within the level.
+    #[inline]
+    fn get(&self, block: [u32; 3], extent: [u32; 3]) -> Option<u32> {
+        match self {
+            Self::Dense(places) => places.get(dense_place(block, extent)).copied().filter(|&place| place != NONE),
+            Self::Sparse(places) => places.get(&block_key(block)).copied(),
+        }
+    }
+}
+
+#[inline]
+fn dense_place([x, y, z]: [u32; 3], extent: [u32; 3]) -> usize {
+    x as usize + extent[0] as usize * (y as usize + extent[1] as usize * z as usize)
 }
 
 impl Blocks {
@@ -50,19 +96,15 @@ impl Blocks {
     #[must_use]
     pub fn new(keys: Vec<u64>, extent: [u32; 3]) -> Self {
         debug_assert!(keys.is_sorted_by(|a, b| a < b));
-        let index: FxHashMap<u64, u32> = keys.iter().enumerate().map(|(i, &k)| (k, i as u32)).collect();
         let coordinates: Vec<[u32; 3]> = keys.par_iter().map(|&k| block_of_key(k)).collect();
+        let index = Index::new(&keys, &coordinates, extent);
         let neighbors = coordinates
             .par_iter()
             .map(|&c| {
                 std::array::from_fn(|code| {
                     let step = [code % 3, code / 3 % 3, code / 9].map(|s| s as u32);
                     let n: [u32; 3] = std::array::from_fn(|a| (c[a] + step[a]).wrapping_sub(1));
-                    if (0..3).all(|a| n[a] < extent[a]) {
-                        index.get(&block_key(n)).copied().unwrap_or(NONE)
-                    } else {
-                        NONE
-                    }
+                    if (0..3).all(|a| n[a] < extent[a]) { index.get(n, extent).unwrap_or(NONE) } else { NONE }
                 })
             })
             .collect();
@@ -94,7 +136,10 @@ impl Blocks {
     /// Index of the block at these block coordinates.
     #[must_use]
     pub fn find(&self, block: [u32; 3]) -> Option<usize> {
-        self.index.get(&block_key(block)).map(|&i| i as usize)
+        if (0..3).any(|a| block[a] >= self.extent[a]) {
+            return None;
+        }
+        self.index.get(block, self.extent).map(|i| i as usize)
     }
 
     /// Whether the block's face on this side of `axis` is a face of the whole domain.

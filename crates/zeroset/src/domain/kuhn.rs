@@ -28,7 +28,7 @@ pub const TETRAHEDRA: [Tetrahedron; 6] = [
 /// On a shared face the lower axis goes first, so the answer is unique.
 #[inline]
 #[must_use]
-pub fn tetrahedron_of(f: [f32; 3]) -> usize {
+pub fn tetrahedron_of<T: PartialOrd + Copy>(f: [T; 3]) -> usize {
     let (xy, xz, yz) = (f[0] >= f[1], f[0] >= f[2], f[1] >= f[2]);
     match (xy, xz, yz) {
         (true, true, true) => 0,

@@ -40,6 +40,8 @@ pub enum LatticeError {
 
 /// Cells along the longest axis of level 0 lie in this many ..= twice as many.
 const COARSEST_CELLS: f64 = 16.0;
+/// More blocks than this at level 0 are a mistake.
+const MOST_COARSE_BLOCKS: f64 = 1e6;
 /// 2^21 nodes is what a Morton code holds.
 const MAX_NODE_BITS: u32 = 21;
 
@@ -77,6 +79,54 @@ impl Lattice {
         if node_bits > MAX_NODE_BITS {
             return Err(too_fine());
         }
+        Ok(Self { origin, spacing, finest, blocks, fraction_bits: (32 - node_bits).min(20) })
+    }
+
+    /// A lattice over a box whose nodes lie where those of the finest level of this one do, or would beyond its box.
+    ///
+    /// # Errors
+    /// If the box is not finite or has too many cells.
+    pub(crate) fn over(&self, low: [f64; 3], high: [f64; 3]) -> Result<Self, LatticeError> {
+        let block = 8.0 * self.spacing;
+        let extent = (0..3).map(|a| high[a] - low[a]).fold(0.0, f64::max);
+        if !extent.is_finite() || extent <= 0.0 {
+            return Err(LatticeError::NoExtent);
+        }
+        if extent / self.spacing > f64::from(1 << (MAX_NODE_BITS - 1)) {
+            let least = extent / f64::from(1 << (MAX_NODE_BITS - 1));
+            return Err(LatticeError::TooFine { spacing: self.spacing, extent, least });
+        }
+        let first: [f64; 3] = std::array::from_fn(|a| ((low[a] - self.origin[a]) / block).floor());
+        // The last node of a block is not the first of the next.
+        let count: [u32; 3] = std::array::from_fn(|a| {
+            ((high[a] - self.origin[a] + self.spacing) / block - first[a]).ceil().max(1.0) as u32
+        });
+        let most = count.into_iter().max().unwrap_or(1);
+        let finest = (8.0 * f64::from(most) / COARSEST_CELLS).log2().floor().max(0.0) as u32;
+        let blocks = count.map(|n| n.div_ceil(1 << finest));
+        let origin = std::array::from_fn(|a| self.origin[a] + block * first[a]);
+        Self::new(origin, self.spacing, finest, blocks)
+    }
+
+    /// A lattice from its parts, as they are kept.
+    ///
+    /// # Errors
+    /// If a number is not finite, the spacing is not positive, or it has too many nodes.
+    pub fn new(origin: [f64; 3], spacing: f64, finest: u32, blocks: [u32; 3]) -> Result<Self, LatticeError> {
+        if !(spacing.is_finite() && spacing > 0.0) {
+            return Err(LatticeError::Spacing(spacing));
+        }
+        if !origin.iter().all(|c| c.is_finite()) || blocks.contains(&0) {
+            return Err(LatticeError::NoExtent);
+        }
+        let most = blocks.into_iter().max().unwrap_or(1);
+        let nodes = 8.0 * f64::from(most) * 2.0_f64.powi(finest.min(64) as i32);
+        let all: f64 = blocks.iter().map(|&b| f64::from(b)).product();
+        if nodes > f64::from(1 << MAX_NODE_BITS) || all > MOST_COARSE_BLOCKS {
+            let extent = nodes * spacing;
+            return Err(LatticeError::TooFine { spacing, extent, least: extent / f64::from(1 << MAX_NODE_BITS) });
+        }
+        let node_bits = ((8 * most) << finest).next_power_of_two().trailing_zeros();
         Ok(Self { origin, spacing, finest, blocks, fraction_bits: (32 - node_bits).min(20) })
     }
 
@@ -147,6 +197,21 @@ mod tests {
         }
         let across = lattice.nodes_at(0).into_iter().max().unwrap();
         assert!((16..=40).contains(&across), "{across}");
+    }
+
+    #[test]
+    fn boxes_of_any_size_are_covered_by_nodes_in_step() {
+        for i in 0..400 {
+            let high = [0.5 + 0.013 * f64::from(i), 0.4, 0.01 * f64::from(i)];
+            let from = Lattice::new([0.37, -0.2, 5.0], 0.02, 3, [2; 3]).unwrap();
+            let lattice = from.over([0.0; 3], high).unwrap();
+            let last = lattice.nodes_at(lattice.finest).map(|n| f64::from(n - 1));
+            let far = lattice.position(lattice.finest, last);
+            // But for rounding where a node is at the face.
+            assert!((0..3).all(|a| lattice.origin[a] < 1e-12 && far[a] > high[a] - 1e-12), "{high:?}");
+            let off = (lattice.origin[0] - from.origin[0]) / 0.02;
+            assert!((off - off.round()).abs() < 1e-9);
+        }
     }
 
     #[test]

@@ -108,12 +108,22 @@ impl Facets {
                 *corners = corners.map(|corner| flat.foot(corner));
             }
         }
+        Self { of_features, ..Self::of(flats, triangles, plane_of) }
+    }
+
+    /// Facets from planes, triangles, and the plane of each triangle.
+    pub(crate) fn of(flats: Vec<Flat>, triangles: Vec<[Vec3; 3]>, plane_of: Vec<u32>) -> Self {
         let mesh = Mesh {
             vertices: triangles.as_flattened().to_vec(),
             triangles: (0..triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect(),
             ..Mesh::default()
         };
-        Self { flats, triangles, plane_of, of_features, tree: TriangleTree::new(&mesh) }
+        Self { flats, of_features: triangles.len(), triangles, plane_of, tree: TriangleTree::new(&mesh) }
+    }
+
+    /// The triangles, with the plane of each.
+    pub(crate) fn triangles(&self) -> (&[[Vec3; 3]], &[u32]) {
+        (&self.triangles, &self.plane_of)
     }
 
     /// The triangles of the features' polygons with their outward normals; those of patches are left out.

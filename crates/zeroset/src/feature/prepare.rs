@@ -11,10 +11,11 @@ use super::surroundings::Surroundings;
 use crate::cloud::Cloud;
 use crate::domain::{block_key, bounds};
 use crate::field::LatticeField;
+use crate::fit::Frame;
 use crate::fit::cascade::Scene;
 use crate::monitor::Monitor;
 use crate::reconstruct::{
-    AttributeChoice, Frame, Plan, PlanReport, ReconstructError, ReconstructParams, Resolution, Trim, plan,
+    AttributeChoice, Plan, PlanReport, ReconstructError, ReconstructParams, Resolution, Trim, plan,
 };
 use crate::vec3::{self, Vec3};
 

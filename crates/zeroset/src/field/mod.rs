@@ -4,7 +4,7 @@
 //! A [`Field`] has a value, a gradient and bounds everywhere. F < 0 inside, F > 0 outside, and the gradient points outward. Fields are
 //! fitted models, primitives ([`HalfSpace`], [`Cuboid`], [`Ball`], [`Frustum`] for cylinders and cones, [`Prism`], [`HeightField`],
 //! [`MeshSolid`]), and what is made of others: [`Union`], [`Intersection`], [`Difference`], [`Complement`], [`SmoothUnion`], [`Offset`],
-//! [`Shell`] and [`Placed`].
+//! [`Shell`], [`Placed`] and [`Tagged`].
 //!
 //! # Formulas
 //! Union is the least of the values, intersection the greatest, complement the negative, and a difference the intersection with a complement.
@@ -38,28 +38,32 @@
 
 mod combine;
 mod interval;
-mod lattice_field;
+mod lattice;
 mod primitive;
 
 #[cfg(test)]
 mod tests;
 
-pub use combine::{Complement, Difference, Intersection, Offset, Placed, Shell, SmoothUnion, Union};
+pub use combine::{Complement, Difference, Intersection, Offset, Placed, Placement, Shell, SmoothUnion, Tagged, Union};
 pub use interval::Interval;
-pub use lattice_field::LatticeField;
+pub use lattice::{LatticeField, LatticeSolid};
 pub use primitive::{Ball, Cuboid, Frustum, HalfSpace, HeightField, MeshSolid, Prism};
 
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use crate::vec3::{self, Vec3};
 
 /// What the absolute value of a field is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Metric {
     /// The distance to the surface.
     Distance,
     /// Never more than the distance to the surface; equal to first order beside a smooth part of it.
     Bound,
+    /// About the distance within some cells of the surface; beyond them only the sign counts.
+    Near,
     /// Nothing: only the sign counts, and the gradient at the surface.
     Sign,
 }
@@ -97,6 +101,17 @@ pub enum FieldError {
     Broken(#[from] crate::mesh::MeshError),
 }
 
+/// A field among those that another is made of.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Operand {
+    /// The number that it was given: see [`Tagged`].
+    pub tag: Option<usize>,
+    /// Where its coordinates lie in those of the whole.
+    pub placement: Placement,
+    /// Whether its outside is inside of the whole.
+    pub is_reversed: bool,
+}
+
 /// A function of space whose zero set is a surface: F < 0 inside, F > 0 outside.
 pub trait Field: Send + Sync + std::fmt::Debug {
     /// F at a position.
@@ -104,6 +119,11 @@ pub trait Field: Send + Sync + std::fmt::Debug {
 
     /// The gradient of F at a position, which points outward. On a crease it is that of one of the sides.
     fn gradient(&self, p: [f64; 3]) -> [f64; 3];
+
+    /// Both, which may take less time together.
+    fn value_and_gradient(&self, p: [f64; 3]) -> (f64, [f64; 3]) {
+        (self.value(p), self.gradient(p))
+    }
 
     /// What |F| is.
     fn metric(&self) -> Metric;
@@ -123,7 +143,7 @@ pub trait Field: Send + Sync + std::fmt::Debug {
         Interval::around(value, self.lipschitz() * (radius + rounding) + 1e-13 * value.abs())
     }
 
-    /// A box outside of which the surface has no part; `None` if there is no such box.
+    /// A box outside of which the surface has no part; `None` if there is no such box. It may be infinite along some axes.
     fn extent(&self) -> Option<[[f64; 3]; 2]>;
 
     /// Number of sheets.
@@ -147,6 +167,12 @@ pub trait Field: Send + Sync + std::fmt::Debug {
     fn is_flat(&self, sheet: u32) -> bool {
         let _ = sheet;
         false
+    }
+
+    /// The operand that a sheet belongs to.
+    fn operand(&self, sheet: u32) -> Operand {
+        let _ = sheet;
+        Operand::default()
     }
 
     /// F at many positions, on all threads.

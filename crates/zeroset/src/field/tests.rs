@@ -1,11 +1,12 @@
 //! What every field keeps, and the laws of Boolean operations.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
 use super::*;
+use crate::fit::cascade::{self, FitParams};
 use crate::sample::{Scene, SceneKind};
 use crate::vec3;
 
@@ -38,8 +39,25 @@ fn solid() -> MeshSolid {
     MeshSolid::new(&mesh).unwrap()
 }
 
+/// A model fitted to a scene, moved to about the origin; fitted once.
+fn fitted(kind: SceneKind) -> Any {
+    static FITTED: [OnceLock<Arc<LatticeSolid>>; 2] = [const { OnceLock::new() }; 2];
+    let is_object = kind == SceneKind::Torus;
+    let fit = || {
+        let points: Vec<[f64; 3]> = Scene::new(kind, 1).points(4000, 0.001, 1).points;
+        let middle = points.iter().fold([0.0; 3], |sum, &p| vec3::add_scaled(sum, p, 1.0 / points.len() as f64));
+        let points: Vec<[f64; 3]> = points.iter().map(|&p| vec3::sub(p, middle)).collect();
+        let scene = if is_object { cascade::Scene::Object } else { cascade::Scene::Terrain };
+        let (field, _) = cascade::fit(&points, &FitParams::new(scene, 1.0 / 30.0), &()).unwrap();
+        Arc::new(LatticeSolid::new(field, Metric::Sign))
+    };
+    Arc::clone(FITTED[usize::from(is_object)].get_or_init(fit)) as Any
+}
+
 fn primitives() -> Vec<Any> {
     vec![
+        fitted(SceneKind::Torus),
+        fitted(SceneKind::City),
         Arc::new(HalfSpace::new([0.1, 0.2, 0.0], [1.0, -2.0, 0.5]).unwrap()),
         Arc::new(Cuboid::new([0.7, -0.5, -0.3], [-0.6, 0.6, 0.8]).unwrap()),
         Arc::new(Ball::new([0.1, -0.2, 0.3], 0.6).unwrap()),
@@ -53,8 +71,9 @@ fn primitives() -> Vec<Any> {
 }
 
 fn placed(field: Any) -> Any {
-    let turned = Placed::new(field).turned([1.0, 2.0, -0.5], 0.8).unwrap();
-    Arc::new(turned.scaled(0.9).unwrap().moved([0.1, -0.1, 0.05]).unwrap())
+    let turned = Placement::default().turned([1.0, 2.0, -0.5], 0.8, [0.0; 3]).unwrap();
+    let scaled = turned.scaled(0.9, [0.0; 3]).unwrap();
+    Arc::new(Placed::new(field, scaled.moved([0.1, -0.1, 0.05]).unwrap()))
 }
 
 /// A random tree over the primitives.
@@ -214,8 +233,15 @@ fn signs_are_right() {
         (Arc::new(prism()), [-0.35, -0.7, 0.6], false),
         (Arc::new(heights()), [0.0, 0.0, -2.0], true),
         (Arc::new(heights()), [5.0, 5.0, 2.0], false),
-        (primitives().remove(4), [0.2, 0.0, 0.75], false),
-        (primitives().remove(4), [0.19, 0.0, 0.6], true),
+        // Far from what is known, within the lattice and beyond it.
+        (fitted(SceneKind::City), [0.0, 0.0, 0.4], false),
+        (fitted(SceneKind::City), [0.2, -0.1, -0.3], true),
+        (fitted(SceneKind::City), [9.0, -9.0, -9.0], true),
+        (fitted(SceneKind::City), [9.0, -9.0, 9.0], false),
+        (fitted(SceneKind::Torus), [0.0, 0.0, 0.0], false),
+        (fitted(SceneKind::Torus), [0.0, 4.0, 0.0], false),
+        (primitives().remove(6), [0.2, 0.0, 0.75], false),
+        (primitives().remove(6), [0.19, 0.0, 0.6], true),
     ];
     for (field, p, is_inside) in inside {
         assert_eq!(field.value(p) < 0.0, is_inside, "{p:?} of {field:?}");
@@ -259,7 +285,7 @@ fn laws_of_boolean_operations_hold() {
 
 #[test]
 fn a_smooth_union_is_a_union_away_from_the_seam() {
-    let (a, b) = (primitives().remove(1), primitives().remove(2));
+    let (a, b) = (primitives().remove(3), primitives().remove(4));
     let sharp = Union::new(vec![Arc::clone(&a), Arc::clone(&b)]).unwrap();
     let smooth = SmoothUnion::new(Arc::clone(&a), Arc::clone(&b), 0.1).unwrap();
     let mut rng = Pcg64Mcg::seed_from_u64(8);

@@ -10,7 +10,11 @@
 
 pub mod cascade;
 pub(crate) mod eigen;
+mod frame;
 pub mod normalized;
+
+pub(crate) use frame::Frame;
+pub use frame::Up;
 
 use serde::Serialize;
 

@@ -5,6 +5,7 @@ mod components;
 mod creases;
 mod edges;
 mod intersections;
+mod section;
 mod simplify;
 mod topology;
 
@@ -18,6 +19,7 @@ pub use creases::{SHARP_ANGLE, creases};
 pub(crate) use edges::Edges;
 pub(crate) use intersections::{Facet, Projection, pairs_of as overlapping_pairs, projections};
 pub use intersections::{SelfIntersectionError, SelfIntersections, self_intersections};
+pub use section::{PlaneCurve, section};
 pub use simplify::{Deviation, SimplifyError, SimplifyParams, SimplifyReport, simplify};
 pub use topology::{Component, Topology, topology};
 

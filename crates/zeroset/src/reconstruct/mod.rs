@@ -15,8 +15,6 @@
 //! # Ok::<(), zeroset::reconstruct::ReconstructError>(())
 //! ```
 
-mod attributes;
-mod frame;
 mod patches;
 mod plan;
 mod quality;
@@ -24,16 +22,18 @@ mod run;
 mod scene;
 mod structure;
 
-pub(crate) use frame::Frame;
-pub use frame::Up;
-pub use plan::{AttributeChoice, MinComponent, Plan, PlanReport, ReconstructParams, Resolution, Trim, plan};
+pub use crate::fit::Up;
+pub use crate::model::AttributeChoice;
+pub use plan::{MinComponent, Plan, PlanReport, ReconstructParams, Resolution, Trim, plan};
 pub use quality::Quality;
-pub use run::{ReconstructReport, StageSeconds};
+pub use run::{FittedReport, ReconstructReport, StageSeconds};
 pub use scene::SceneEvidence;
 pub use structure::StructureReport;
 
+use crate::contour::FieldContourError;
 use crate::fit::cascade::FitError;
 use crate::mesh::SimplifyError;
+use crate::model::ModelError;
 use crate::monitor::Cancelled;
 
 /// A reconstruction that could not be made. Each message names the remedy.
@@ -98,12 +98,26 @@ pub enum ReconstructError {
     /// The mesh cannot be simplified.
     #[error("{0}; check --triangles and --max-error")]
     Simplify(SimplifyError),
+    /// No mesh can be made of the fit.
+    #[error(transparent)]
+    Model(ModelError),
     /// The fit failed.
     #[error(transparent)]
     Fit(#[from] FitError),
     /// The monitor asked to stop.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+}
+
+impl From<ModelError> for ReconstructError {
+    fn from(error: ModelError) -> Self {
+        match error {
+            ModelError::Cancelled(cancelled) => Self::Cancelled(cancelled),
+            ModelError::Contour(FieldContourError::NoSurface) => Self::NoSurface,
+            ModelError::Simplify(source) => Self::Simplify(source),
+            other => Self::Model(other),
+        }
+    }
 }
 
 impl From<SimplifyError> for ReconstructError {

@@ -3,13 +3,14 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::frame::Frame;
 use super::scene::SceneEvidence;
 use super::{Quality, ReconstructError, Up};
 use crate::cloud::{Cloud, Spacing, noise};
 use crate::constraint::{ConstraintPlan, Constraints, Local};
+use crate::fit::Frame;
 use crate::fit::cascade::{FitError, FitParams, PolishParams, Prepared, Scene};
 use crate::mesh::SimplifyParams;
+use crate::model::{AttributeChoice, SAMPLES_REL};
 use crate::monitor::{Monitor, check};
 use crate::spatial::PointTree;
 
@@ -43,21 +44,6 @@ pub enum Trim {
     /// Surface farther than this from the data. In terrain and airborne scenes distance is measured in the ground plane and the
     /// surface also ends at the outline of the data.
     Length(f64),
-}
-
-/// Which values of the points the vertices get.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum AttributeChoice {
-    /// None.
-    Off,
-    /// Colour, where the cloud has it.
-    #[default]
-    Rgb,
-    /// Intensity, where the cloud has it.
-    Intensity,
-    /// Class, where the cloud has it.
-    Class,
 }
 
 /// Which pieces of the mesh are dropped because they are small; see [`drop_small_components`](crate::mesh::drop_small_components).
@@ -134,8 +120,6 @@ const LEAST_TRIANGLES: usize = 100;
 const NOISE_REL: f64 = 0.25;
 /// The least and the most automatic weight of the data term.
 const SCREENING: [f64; 2] = [1.0, 16.0];
-/// The distance between samples on constraints, over the resolution.
-pub(super) const SAMPLES_REL: f64 = 0.5;
 /// Fewer points never make a surface.
 const LEAST_POINTS: usize = 8;
 /// Peak bytes of a whole run for each cell of the finest level that the surface crosses, in a draft and else, and for each point.

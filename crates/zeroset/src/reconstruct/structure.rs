@@ -4,16 +4,15 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::patches::{join, patches};
-use super::{Frame, PlanReport, ReconstructError};
+use super::{PlanReport, ReconstructError};
 use crate::cloud::Cloud;
 use crate::constraint::Local;
-use crate::contour::{Known, SharpReport, sharpen};
 use crate::feature::{Facets, FeatureError, FeatureParams, detect_with};
 use crate::field::LatticeField;
+use crate::fit::Frame;
 use crate::fit::cascade::{Held, OrientedTriangle, PolishParams, PolishReport, Scene, polish};
-use crate::mesh::Mesh;
+use crate::model;
 use crate::monitor::{Cancelled, Monitor};
-use crate::spatial::PointTree;
 use crate::vec3::Vec3;
 
 /// Points so near a plane of the user, in cells or in deviations of the noise, whichever is more, lie on it.
@@ -21,7 +20,7 @@ const BESIDE: f64 = 0.25;
 const DEVIATIONS: f64 = 3.0;
 
 /// The planes of a surface, and which points lie on them.
-pub(super) struct Structure {
+pub(super) struct Found {
     facets: Facets,
     /// The plane of each point.
     plane_of: Vec<Option<u32>>,
@@ -41,7 +40,7 @@ pub struct StructureReport {
     pub plane_rms: Option<f64>,
 }
 
-impl Structure {
+impl Found {
     /// Finds planes with the fit that is there. `known`, in the coordinates of the cloud, adds planes of the user.
     pub(super) fn find(
         cloud: &Cloud,
@@ -101,18 +100,16 @@ impl Structure {
         polish(field, &loose, held, params, monitor)
     }
 
-    /// Makes a mesh in the coordinates of the cloud sharp.
-    pub(super) fn sharpen(&self, mesh: &mut Mesh, cloud: &Cloud, plan: &PlanReport) -> SharpReport {
-        let points = PointTree::new(&cloud.points);
-        let known = Known {
-            facets: &self.facets,
-            positions: &cloud.points,
-            points: &points,
-            plane_of: &self.plane_of,
+    /// The same to be kept.
+    pub(super) fn keep(self) -> (model::Structure, StructureReport) {
+        let (triangles, plane_of_triangle) = self.facets.triangles();
+        let kept = model::Structure {
+            planes: self.facets.flats.iter().map(|flat| (flat.normal, flat.offset)).collect(),
+            triangles: triangles.to_vec(),
+            plane_of_triangle: plane_of_triangle.to_vec(),
+            plane_of_point: self.plane_of,
             curved_creases: self.curved_creases,
-            noise: plan.noise,
-            cell: plan.resolution,
         };
-        sharpen(mesh, &known)
+        (kept, self.report)
     }
 }

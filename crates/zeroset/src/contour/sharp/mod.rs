@@ -56,7 +56,8 @@ use crate::mesh::Mesh;
 use crate::spatial::PointTree;
 use crate::vec3::Vec3;
 use embed::Raster;
-pub(crate) use of_field::{Sharpened, sharpen_field};
+pub(super) use of_field::meeting;
+pub(crate) use of_field::{REACH as FIELD_REACH, sharpen_field};
 use stars::{Fans, Stars};
 
 /// What the surface is known to be.

@@ -1,75 +1,161 @@
 //! Sharp meshes of fields that know their sheets.
 
 use rayon::prelude::*;
+use rustc_hash::FxHashMap;
 
 use super::insert::{Inserted, insert_creases};
 use super::sheets::{Sheet, Sheets};
-use super::stars::Fans;
-use super::{Raster, Seat, embed, tidy};
+use super::stars::{Fans, Stars};
+use super::{Known, Raster, Seat, SharpReport, creases, embed, settle, tidy};
 use crate::feature::Flat;
 use crate::field::Field;
 use crate::mesh::Mesh;
 use crate::vec3::{self, Vec3};
 
-/// A vertex goes no farther than this, in cells: the lattice loses the tip of a wedge of 30 degrees two cells before its edge.
-const REACH: f64 = 4.0;
+/// A vertex goes no farther than this, in cells: the lattice loses the tip of a wedge of 15 degrees eight cells before its edge.
+pub(crate) const REACH: f64 = 8.0;
 /// Steps of Newton's method.
 const STEPS: usize = 20;
 /// It is there when the next step would be shorter than this, in cells.
 const NEAR: f64 = 1e-9;
 
-/// What was made sharp.
-pub(crate) struct Sharpened {
-    pub(crate) on_creases: usize,
-    pub(crate) at_corners: usize,
-    pub(crate) folded: usize,
-    pub(crate) taken_back: usize,
-    pub(crate) intersections: u64,
-}
-
-/// Puts the vertices of a mesh on the sheets of its field, and mesh edges along the lines in which they meet.
-pub(crate) fn sharpen_field(mesh: &mut Mesh, field: &dyn Field, cell: f64) -> Sharpened {
+/// Puts the vertices of a mesh on the sheets of its field, and mesh edges along the lines in which they meet. What is known of fitted operands is given by
+/// their tags: there the sheets come from the points.
+pub(crate) fn sharpen_field(mesh: &mut Mesh, field: &dyn Field, known: &[Option<Known>], cell: f64) -> SharpReport {
     let raster = Raster::new(mesh);
     let first = mesh.vertices.len();
     let numbers: Vec<u32> = mesh.vertices.par_iter().map(|&p| field.sheet(p)).collect();
-    let foot = |(&p, &number): (&Vec3, &u32)| meet(field, &[number], p, cell).unwrap_or(p);
-    let feet: Vec<Vec3> = mesh.vertices.par_iter().zip(&numbers).map(foot).collect();
-    let tangent = |(&foot, &number): (&Vec3, &u32)| {
-        let (_, gradient) = field.on_sheet(number, foot);
-        let normal = vec3::normalized(gradient).unwrap_or([0.0, 0.0, 1.0]);
-        Sheet { plane: Some(number), is_flat: field.is_flat(number), flat: Flat::through(normal, foot) }
-    };
-    let sheets = Sheets::given(feet.par_iter().zip(&numbers).map(tangent).collect());
+    let (sheets, feet, places) = sheets(mesh, field, &numbers, known, cell);
+    let on_planes = (0..first as u32).filter(|&v| sheets.of(v).is_flat).count();
     let mut inserted = insert_creases(mesh, &sheets, REACH * cell);
     drop(sheets);
-    mesh.vertices[..first].copy_from_slice(&feet);
-    follow_lines(mesh, field, first, &numbers, &mut inserted, cell);
+    for (v, foot) in mesh.vertices.iter_mut().zip(&feet) {
+        *v = foot.unwrap_or(*v);
+    }
+    follow_lines(mesh, field, &places, &mut inserted, cell);
     let on_creases = inserted.seats.iter().filter(|s| matches!(s, Seat::Along(..))).count();
     let at_corners = inserted.seats.iter().filter(|s| matches!(s, Seat::At)).count();
     inserted.origins.par_iter_mut().for_each(|origin| *origin = raster.nearest(*origin));
     let fans = Fans::new(mesh);
+    let is_fitted = known.iter().any(Option::is_some);
+    if is_fitted {
+        let everywhere = known.iter().flatten().any(|known| known.curved_creases);
+        settle::settle(mesh, &fans, &inserted, everywhere);
+    }
     let folded = tidy::tidy(mesh, fans, &mut inserted, cell);
     // Vertices on curved sheets have left them a little.
     let seats = &inserted.seats;
     mesh.vertices[..first].par_iter_mut().enumerate().for_each(|(v, p)| {
-        if seats[v] == Seat::Loose {
-            *p = meet(field, &[numbers[v]], *p, cell).unwrap_or(*p);
+        if let (Seat::Loose, Some(_)) = (seats[v], feet[v]) {
+            *p = meet(field, &[Place::OnField(numbers[v])], *p, cell).unwrap_or(*p);
         }
     });
-    let (taken_back, intersections) = embed::embed(mesh, first, &inserted.origins, raster, 0.0);
+    let moved = if is_fitted { embed::MOVED * cell } else { 0.0 };
+    let (taken_back, intersections) = embed::embed(mesh, first, &inserted.origins, raster, moved);
+    let (crease_length, crease_angle) = creases::measure(mesh, &inserted.seats);
     super::super::clip::drop_unused(mesh);
-    Sharpened { on_creases, at_corners, folded, taken_back, intersections }
+    SharpReport { on_planes, on_creases, at_corners, crease_length, crease_angle, folded, taken_back, intersections }
+}
+
+/// What a vertex lies on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Place {
+    /// A sheet of the field.
+    OnField(u32),
+    /// A plane that the points show, or the tangent plane of a curved part.
+    OnPlane(Option<u32>, Flat),
+}
+
+/// The sheet of each vertex; its foot on that, where it is one of the field's own; and what exactly it lies on.
+fn sheets(
+    mesh: &Mesh,
+    field: &dyn Field,
+    numbers: &[u32],
+    known: &[Option<Known>],
+    cell: f64,
+) -> (Sheets, Vec<Option<Vec3>>, Vec<Place>) {
+    // Operand 0 is all that points tell nothing of.
+    let tag = |number: u32| field.operand(number).tag.filter(|&tag| known.get(tag).is_some_and(Option::is_some));
+    let mut operand_of: FxHashMap<u32, u32> = FxHashMap::default();
+    for &number in numbers {
+        operand_of.entry(number).or_insert_with(|| tag(number).map_or(0, |tag| tag as u32 + 1));
+    }
+    let operands: Vec<u32> = numbers.par_iter().map(|number| operand_of[number]).collect();
+    let own = |v: usize| meet(field, &[Place::OnField(numbers[v])], mesh.vertices[v], cell).unwrap_or(mesh.vertices[v]);
+    let stars = operands.iter().any(|&operand| operand != 0).then(|| Stars::new(mesh));
+    let beside = stars.as_ref().map_or_else(Vec::new, |stars| beside_others(&operands, stars));
+    // Where the mesh is blunt it is away from the sheet.
+    let is_own = |v: usize| operands[v] == 0 || beside[v];
+    let mut feet: Vec<Option<Vec3>> = (0..numbers.len()).into_par_iter().map(|v| is_own(v).then(|| own(v))).collect();
+    let tangent = |number: u32, foot: Vec3| {
+        let (_, gradient) = field.on_sheet(number, foot);
+        Flat::through(vec3::normalized(gradient).unwrap_or([0.0, 0.0, 1.0]), foot)
+    };
+    let mut of: Vec<Sheet> = numbers
+        .par_iter()
+        .zip(&feet)
+        .zip(&mesh.vertices)
+        .map(|((&number, foot), &p)| {
+            let flat = tangent(number, foot.unwrap_or(p));
+            Sheet { plane: Some(number), is_flat: field.is_flat(number), flat }
+        })
+        .collect();
+    let mut next = field.sheets();
+    if let Some(stars) = stars {
+        for (tag, known) in known.iter().enumerate() {
+            let (Some(known), operand) = (known, tag as u32 + 1) else { continue };
+            let shown = super::sheets::sheets(mesh, &stars, known);
+            of.par_iter_mut().enumerate().filter(|(v, _)| operands[*v] == operand).for_each(|(v, sheet)| {
+                let shown = shown.of(v as u32);
+                *sheet = match shown.plane {
+                    Some(plane) => Sheet { plane: Some(next + plane), ..*shown },
+                    None if beside[v] => Sheet { plane: None, is_flat: false, flat: sheet.flat },
+                    None => *shown,
+                };
+            });
+            next += known.facets.flats.len() as u32;
+        }
+    }
+    let place = |v: usize| match (feet[v], of[v].plane) {
+        (Some(_), None) => Place::OnField(numbers[v]),
+        (Some(_), Some(_)) if operands[v] == 0 => Place::OnField(numbers[v]),
+        (_, plane) => Place::OnPlane(plane, of[v].flat),
+    };
+    let places = (0..numbers.len()).into_par_iter().map(place).collect();
+    if operands.iter().any(|&operand| operand != 0) {
+        feet.par_iter_mut().enumerate().filter(|(v, _)| operands[*v] != 0).for_each(|(_, foot)| *foot = None);
+    }
+    let curved_creases = known.iter().map(|known| known.as_ref().is_some_and(|known| known.curved_creases));
+    (Sheets::given(of, operands, std::iter::once(true).chain(curved_creases).collect()), feet, places)
+}
+
+/// Rings of vertices around another operand in which the mesh is blunt.
+const BLUNT: usize = 2;
+
+/// Whether another operand is near each vertex.
+fn beside_others(operands: &[u32], stars: &Stars) -> Vec<bool> {
+    let differs = |v: usize| stars.around(v as u32).iter().any(|&u| operands[u as usize] != operands[v]);
+    let mut beside: Vec<bool> = (0..operands.len()).into_par_iter().map(differs).collect();
+    for _ in 1..BLUNT {
+        let old = &beside;
+        let grown = |v: usize| old[v] || stars.around(v as u32).iter().any(|&u| old[u as usize]);
+        beside = (0..operands.len()).into_par_iter().map(grown).collect();
+    }
+    beside
 }
 
 /// Puts new vertices where their sheets meet, which tangent planes told to first order only.
-fn follow_lines(mesh: &mut Mesh, field: &dyn Field, first: usize, numbers: &[u32], inserted: &mut Inserted, cell: f64) {
+fn follow_lines(mesh: &mut Mesh, field: &dyn Field, places: &[Place], inserted: &mut Inserted, cell: f64) {
+    let first = places.len();
     let met: Vec<Option<Vec3>> = (first..mesh.vertices.len())
         .into_par_iter()
         .map(|v| {
-            let mut sheets: Vec<u32> =
-                inserted.between[v - first].iter().filter(|&&u| u != u32::MAX).map(|&u| numbers[u as usize]).collect();
-            sheets.sort_unstable();
-            sheets.dedup();
+            let mut sheets: Vec<Place> = Vec::with_capacity(3);
+            for &u in inserted.between[v - first].iter().filter(|&&u| u != u32::MAX) {
+                if !sheets.contains(&places[u as usize]) {
+                    sheets.push(places[u as usize]);
+                }
+            }
             let wanted = match inserted.seats[v] {
                 Seat::Along(..) => 2,
                 Seat::At => 3,
@@ -90,12 +176,22 @@ fn follow_lines(mesh: &mut Mesh, field: &dyn Field, first: usize, numbers: &[u32
     }
 }
 
+/// Whether two sheets meet within a distance of a position.
+pub(in crate::contour) fn meeting(field: &dyn Field, a: u32, b: u32, from: Vec3, reach: f64) -> bool {
+    let place = meet(field, &[Place::OnField(a), Place::OnField(b)], from, reach / REACH);
+    place.is_some()
+}
+
 /// The place near a position where one to three sheets are zero; `None` if it is too far away, or they hardly cross.
-fn meet(field: &dyn Field, sheets: &[u32], from: Vec3, cell: f64) -> Option<Vec3> {
+fn meet(field: &dyn Field, sheets: &[Place], from: Vec3, cell: f64) -> Option<Vec3> {
     use nalgebra::{DMatrix, DVector};
     let mut p = from;
     for _ in 0..STEPS {
-        let all: Vec<(f64, Vec3)> = sheets.iter().map(|&sheet| field.on_sheet(sheet, p)).collect();
+        let on = |sheet: &Place| match sheet {
+            Place::OnField(sheet) => field.on_sheet(*sheet, p),
+            Place::OnPlane(_, flat) => (flat.distance(p), flat.normal),
+        };
+        let all: Vec<(f64, Vec3)> = sheets.iter().map(on).collect();
         let step: Vec3 = if let [(value, gradient)] = all[..] {
             vec3::scale(gradient, -value / vec3::norm_squared(gradient))
         } else {

@@ -67,13 +67,16 @@ impl Sheet {
 /// The sheets of all vertices.
 pub(super) struct Sheets {
     of: Vec<Sheet>,
-    curved_creases: bool,
+    /// The operand that each vertex belongs to; none are told where there is only one.
+    operands: Vec<u32>,
+    /// Whether curved parts of an operand may have creases.
+    curved_creases: Vec<bool>,
 }
 
 impl Sheets {
-    /// Sheets that are known.
-    pub(super) fn given(of: Vec<Sheet>) -> Self {
-        Self { of, curved_creases: true }
+    /// Sheets that are known, and the operands that they belong to. Between two operands there may always be a crease.
+    pub(super) fn given(of: Vec<Sheet>, operands: Vec<u32>, curved_creases: Vec<bool>) -> Self {
+        Self { of, operands, curved_creases }
     }
 
     /// The sheet of a vertex.
@@ -83,9 +86,10 @@ impl Sheets {
 
     /// Whether a crease runs between two neighbouring vertices.
     pub(super) fn meet(&self, a: u32, b: u32) -> bool {
+        let operand = |v: u32| self.operands.get(v as usize).copied().unwrap_or(0);
+        let may = operand(a) != operand(b) || self.curved_creases[operand(a) as usize];
         let (a, b) = (self.of(a), self.of(b));
-        let may = self.curved_creases || a.plane.is_some() && b.plane.is_some();
-        may && a.meets(b)
+        (may || a.plane.is_some() && b.plane.is_some()) && a.meets(b)
     }
 }
 
@@ -115,7 +119,7 @@ pub(super) fn sheets(mesh: &Mesh, stars: &Stars, known: &Known) -> Sheets {
         (0..planes.len()).into_par_iter().map(|v| sheet(v, normals[v])).collect()
     };
     drop((planes, contested));
-    let mut sheets = Sheets { of, curved_creases: known.curved_creases };
+    let mut sheets = Sheets { of, operands: Vec::new(), curved_creases: vec![known.curved_creases] };
     let borders = borders(stars, &sheets);
     for (v, share) in unproven(mesh, stars, known, &sheets) {
         let (p, normal) = (mesh.vertices[v as usize], normals[v as usize]);

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::field::{Field, FieldError, Interval, Metric};
+use crate::field::{Field, FieldError, Interval, Metric, Operand};
 use crate::vec3;
 
 /// The operand that counts at each position: the one with the least value, or the greatest. Their sheets are numbered one after the other.
@@ -64,6 +64,11 @@ impl Field for Choice {
         self.all[self.counting(p).0].gradient(p)
     }
 
+    fn value_and_gradient(&self, p: [f64; 3]) -> (f64, [f64; 3]) {
+        let (own, value) = self.counting(p);
+        (value, self.all[own].gradient(p))
+    }
+
     fn metric(&self) -> Metric {
         self.all.iter().map(|field| field.metric()).fold(Metric::Bound, Metric::max)
     }
@@ -105,6 +110,11 @@ impl Field for Choice {
     fn is_flat(&self, sheet: u32) -> bool {
         let (field, sheet) = self.of_sheet(sheet);
         field.is_flat(sheet)
+    }
+
+    fn operand(&self, sheet: u32) -> Operand {
+        let (field, sheet) = self.of_sheet(sheet);
+        field.operand(sheet)
     }
 }
 
@@ -149,6 +159,9 @@ super::forwarded!(Intersection);
 /// Whether nothing solid lies outside of the box of a field's surface.
 fn is_bounded(field: &dyn Field) -> bool {
     field.extent().is_some_and(|[low, high]| {
+        if !(vec3::is_finite(low) && vec3::is_finite(high)) {
+            return false;
+        }
         // There the sign is the same everywhere.
         let beyond = vec3::add(high, vec3::add(vec3::sub(high, low), [1.0; 3]));
         field.value(beyond) > 0.0
@@ -174,6 +187,11 @@ impl Field for Complement {
 
     fn gradient(&self, p: [f64; 3]) -> [f64; 3] {
         vec3::scale(self.0.gradient(p), -1.0)
+    }
+
+    fn value_and_gradient(&self, p: [f64; 3]) -> (f64, [f64; 3]) {
+        let (value, gradient) = self.0.value_and_gradient(p);
+        (-value, vec3::scale(gradient, -1.0))
     }
 
     fn metric(&self) -> Metric {
@@ -207,6 +225,11 @@ impl Field for Complement {
 
     fn is_flat(&self, sheet: u32) -> bool {
         self.0.is_flat(sheet)
+    }
+
+    fn operand(&self, sheet: u32) -> Operand {
+        let own = self.0.operand(sheet);
+        Operand { is_reversed: !own.is_reversed, ..own }
     }
 }
 

@@ -3,12 +3,18 @@
 /// A field that is another one, its only member.
 macro_rules! forwarded {
     ($name:ty) => {
+        $crate::field::combine::forwarded!($name, |field, sheet| field.0.operand(sheet));
+    };
+    ($name:ty, |$field:pat_param, $sheet:pat_param| $operand:expr) => {
         impl $crate::field::Field for $name {
             fn value(&self, p: [f64; 3]) -> f64 {
                 self.0.value(p)
             }
             fn gradient(&self, p: [f64; 3]) -> [f64; 3] {
                 self.0.gradient(p)
+            }
+            fn value_and_gradient(&self, p: [f64; 3]) -> (f64, [f64; 3]) {
+                self.0.value_and_gradient(p)
             }
             fn metric(&self) -> $crate::field::Metric {
                 self.0.metric()
@@ -34,6 +40,10 @@ macro_rules! forwarded {
             fn is_flat(&self, sheet: u32) -> bool {
                 self.0.is_flat(sheet)
             }
+            fn operand(&self, sheet: u32) -> $crate::field::Operand {
+                let ($field, $sheet) = (self, sheet);
+                $operand
+            }
         }
     };
 }
@@ -43,8 +53,10 @@ mod boolean;
 mod offset;
 mod placed;
 mod smooth;
+mod tagged;
 
 pub use boolean::{Complement, Difference, Intersection, Union};
 pub use offset::{Offset, Shell};
-pub use placed::Placed;
+pub use placed::{Placed, Placement};
 pub use smooth::SmoothUnion;
+pub use tagged::Tagged;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::field::{Field, FieldError, Interval, Metric, positive};
+use crate::field::{Field, FieldError, Interval, Metric, Operand, positive};
 use crate::vec3;
 
 /// A union with a fillet where its operands meet.
@@ -106,6 +106,15 @@ impl Field for SmoothUnion {
             0 => false,
             s if s <= first => self.operands[0].is_flat(s - 1),
             s => self.operands[1].is_flat(s - 1 - first),
+        }
+    }
+
+    fn operand(&self, sheet: u32) -> Operand {
+        let first = self.operands[0].sheets();
+        match sheet {
+            0 => Operand::default(),
+            s if s <= first => self.operands[0].operand(s - 1),
+            s => self.operands[1].operand(s - 1 - first),
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::eigen_seed::eigenvectors;
 use super::free::{is_clear, potentials, turn_outward};
@@ -18,7 +18,7 @@ use crate::fit::Gradient;
 use crate::monitor::{Cancelled, Monitor, check};
 
 /// What is known about the scene before it is fitted. It decides how the sign of F is seeded.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Scene {
     /// A body seen from all sides: everything at the faces of the box is outside.

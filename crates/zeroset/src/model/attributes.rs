@@ -4,8 +4,10 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::AttributeChoice;
-use crate::cloud::{Attributes, Cloud};
+use serde::Serialize;
+
+use super::Fitted;
+use crate::cloud::Attributes;
 use crate::mesh::Mesh;
 use crate::monitor::{Cancelled, Monitor, Steps};
 use crate::spatial::PointTree;
@@ -13,15 +15,30 @@ use crate::spatial::PointTree;
 /// Vertices between two looks at the monitor.
 const CHUNK: usize = 1 << 14;
 
+/// Which values of the points the vertices get.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum AttributeChoice {
+    /// None.
+    Off,
+    /// Colour, where the cloud has it.
+    #[default]
+    Rgb,
+    /// Intensity, where the cloud has it.
+    Intensity,
+    /// Class, where the cloud has it.
+    Class,
+}
+
 /// Gives each vertex the chosen values of the point nearest to it. `shares` is the part of the whole that this is.
 pub(super) fn transfer(
-    cloud: &Cloud,
+    fitted: &Fitted,
     mesh: &mut Mesh,
     choice: AttributeChoice,
     monitor: &dyn Monitor,
     shares: Range<f64>,
 ) -> Result<(), Cancelled> {
-    let from = &cloud.attributes;
+    let from = fitted.attributes();
     let wanted = match choice {
         AttributeChoice::Off => return Ok(()),
         AttributeChoice::Rgb => from.colors.is_some(),
@@ -31,7 +48,7 @@ pub(super) fn transfer(
     if !wanted {
         return Ok(());
     }
-    let tree = PointTree::new(&cloud.points);
+    let tree = PointTree::new(&fitted.positions());
     let steps = Steps::new(monitor, shares, mesh.vertices.len());
     let nearest = mesh.vertices.par_chunks(CHUNK).map(|vertices| {
         let index = |v: &[f64; 3]| tree.nearest(*v).map_or(0, |n| n.index as u32);

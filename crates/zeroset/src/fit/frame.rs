@@ -3,7 +3,8 @@
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 use serde::Serialize;
 
-use crate::fit::cascade::Scene;
+use super::cascade::Scene;
+use crate::field::Placement;
 
 /// The axis of the file that points to the sky.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
@@ -79,9 +80,30 @@ impl Frame {
         })
     }
 
+    /// The frame with the rows of a rotation; `None` if they are none.
+    pub(crate) fn from_rows(rows: [[f64; 3]; 3]) -> Option<Self> {
+        Placement::new(rows, 1.0, [0.0; 3]).ok()?;
+        Some(Self(Matrix3::from_fn(|i, j| rows[i][j])))
+    }
+
+    /// The rows of its rotation.
+    pub(crate) fn rows(&self) -> [[f64; 3]; 3] {
+        std::array::from_fn(|i| std::array::from_fn(|j| self.0[(i, j)]))
+    }
+
     /// A position of the file in the frame of the fit.
     pub(crate) fn enter(&self, p: [f64; 3]) -> [f64; 3] {
         (self.0 * Vector3::from(p)).into()
+    }
+
+    /// The way into the frame of the fit, from positions that have been shifted.
+    pub(crate) fn entry(&self, shift: [f64; 3]) -> Placement {
+        Placement::rigid(self.0, self.enter(shift.map(|c| -c)))
+    }
+
+    /// The way out of the frame of the fit, and then by a shift.
+    pub(crate) fn exit(&self, shift: [f64; 3]) -> Placement {
+        Placement::rigid(self.0.transpose(), shift)
     }
 
     /// A position of the frame of the fit in the file's.

@@ -1,0 +1,142 @@
+//! Takes the tips of wedges off a sampled field.
+//!
+//! Where two sheets meet at a small angle, the solid, or the gap beside it, is thinner than a cell before their line, at any size of the cells. There nodes fall
+//! inside by chance, which makes crumbs and handles. So nodes that no cube of eight of their side holds change sides, if sheets meet near; the
+//! mesh ends bluntly there, and its rim is moved to the line later.
+
+use rayon::prelude::*;
+
+use super::sharp::meeting;
+use crate::domain::{BLOCK_NODES, Blocks, Mask, NONE, mask_get, mask_set, neighbor_code, shift};
+use crate::field::{Field, LatticeField};
+use crate::vec3::{self, Vec3};
+
+/// Rounds, each of which may go a cell farther from the line.
+const ROUNDS: usize = 8;
+/// Sides that are looked at for another sheet, in cells.
+const BESIDE: f64 = 1.0;
+/// The value of a node that changed sides, in cells.
+const SLIGHT: f32 = 0.1;
+
+/// Changes the sides of nodes near where sheets meet, as far as `reach` from their line. Returns how many.
+pub(super) fn blunt(values: &mut LatticeField, field: &dyn Field, reach: f64) -> usize {
+    let mut changed = 0;
+    for _ in 0..ROUNDS {
+        let mut now = 0;
+        for inside in [true, false] {
+            let lonely = lonely(values, inside);
+            let found = in_wedges(values, &lonely, field, reach);
+            now += found.iter().flatten().map(|word| word.count_ones() as usize).sum::<usize>();
+            let slight = SLIGHT * values.lattice.spacing as f32;
+            let value = if inside { slight } else { -slight };
+            values
+                .values
+                .par_chunks_exact_mut(BLOCK_NODES)
+                .zip(&found)
+                .filter(|(_, found)| **found != [0; 8])
+                .for_each(|(values, found)| {
+                    for (local, own) in values.iter_mut().enumerate() {
+                        if mask_get(found, local) {
+                            *own = value;
+                        }
+                    }
+                });
+        }
+        changed += now;
+        if now == 0 {
+            break;
+        }
+    }
+    changed
+}
+
+/// The known nodes of a side that no cube of eight nodes of that side holds; unknown nodes are of either side.
+fn lonely(values: &LatticeField, inside: bool) -> Vec<Mask> {
+    let side: Vec<Mask> = values
+        .values
+        .par_chunks_exact(BLOCK_NODES)
+        .zip(&values.known)
+        .map(|(values, known)| {
+            std::array::from_fn(|z| {
+                let of_side = |(i, value): (usize, &f32)| u64::from((*value < 0.0) == inside) << i;
+                let bits = values[64 * z..64 * (z + 1)].iter().enumerate().map(of_side).fold(0, |bits, bit| bits | bit);
+                bits | !known[z]
+            })
+        })
+        .collect();
+    // First nodes of whole cubes, and then all nodes of these.
+    let mut cubes = side.clone();
+    for axis in 0..3 {
+        cubes = stepped(&values.blocks, &cubes, axis, true, u64::MAX, |own, next| own & next);
+    }
+    for axis in 0..3 {
+        cubes = stepped(&values.blocks, &cubes, axis, false, u64::MAX, |own, next| own | next);
+    }
+    // At the rim of what is known a node that changed sides would leave a hole.
+    let mut within = values.known.clone();
+    for (axis, ahead) in (0..3).flat_map(|axis| [(axis, false), (axis, true)]) {
+        within = stepped(&values.blocks, &within, axis, ahead, 0, |own, next| own & next);
+    }
+    let rest = side.into_par_iter().zip(cubes).zip(within);
+    rest.map(|((side, held), within)| std::array::from_fn(|z| side[z] & !held[z] & within[z])).collect()
+}
+
+/// Each set joined with the one a step along an axis; blocks that are not there have the words `missing`.
+fn stepped(
+    blocks: &Blocks,
+    masks: &[Mask],
+    axis: usize,
+    ahead: bool,
+    missing: u64,
+    join: impl Fn(u64, u64) -> u64 + Sync,
+) -> Vec<Mask> {
+    let mut step = [0_i32; 3];
+    step[axis] = if ahead { 1 } else { -1 };
+    (0..masks.len())
+        .into_par_iter()
+        .map(|b| {
+            let other = blocks.neighbors[b][neighbor_code(step)];
+            let far = if other == NONE { [missing; 8] } else { masks[other as usize] };
+            let moved = shift(&masks[b], &far, axis, ahead);
+            std::array::from_fn(|z| join(masks[b][z], moved[z]))
+        })
+        .collect()
+}
+
+/// Those of some nodes beside which another sheet counts that meets their own within reach.
+fn in_wedges(values: &LatticeField, nodes: &[Mask], field: &dyn Field, reach: f64) -> Vec<Mask> {
+    let lattice = &values.lattice;
+    let h = lattice.spacing;
+    let is_in_wedge = |p: Vec3| {
+        let own = field.sheet(p);
+        let mut tried = vec![own];
+        (0..27).filter(|code| *code != 13).any(|code| {
+            let step = [code % 3, code / 3 % 3, code / 9].map(|s| BESIDE * h * f64::from(s - 1));
+            let other = field.sheet(vec3::add(p, step));
+            if tried.contains(&other) {
+                return false;
+            }
+            tried.push(other);
+            meeting(field, own, other, p, reach)
+        })
+    };
+    nodes
+        .par_iter()
+        .enumerate()
+        .map(|(b, nodes)| {
+            let mut found = [0; 8];
+            if *nodes == [0; 8] {
+                return found;
+            }
+            let first = values.blocks.coordinates[b].map(|c| 8 * c);
+            for local in (0..BLOCK_NODES).filter(|&local| mask_get(nodes, local)) {
+                let step = [local & 7, local >> 3 & 7, local >> 6];
+                let node = std::array::from_fn(|a| f64::from(first[a] + step[a] as u32));
+                if is_in_wedge(lattice.position(lattice.finest, node)) {
+                    mask_set(&mut found, local);
+                }
+            }
+            found
+        })
+        .collect()
+}
