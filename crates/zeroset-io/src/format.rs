@@ -132,6 +132,7 @@ pub(crate) fn sniff(bytes: &[u8]) -> Option<&'static str> {
         (b"# .PCD", "PCD"),
         (b"VERSION ", "PCD"),
         (b"OFF", "OFF"),
+        (b"\x93NUMPY", "NPY"),
         (b"solid ", "ASCII STL"),
         (b"PK\x03\x04", "a ZIP archive"),
         (b"\x1f\x8b", "a gzip archive"),

@@ -4,9 +4,14 @@
 //! |---|---|---|
 //! | clouds | LAS, LAZ (COPC too), PLY, XYZ / TXT / CSV / ASC, PTS, PCD, E57 | LAS, LAZ, PLY, XYZ / TXT / CSV / ASC, PTS |
 //! | meshes | PLY, OBJ, STL, OFF, GLB | PLY, OBJ, STL, OFF, GLB |
+//! | models | ZSET | ZSET |
 //! | features | JSON | JSON, GeoJSON, OBJ, PLY, DXF |
+//! | sections | | SVG, DXF, GeoJSON |
+//! | points with values of F | any format of clouds, NPY | PLY, CSV, NPY |
+//! | rasters | | GeoTIFF |
 //! | constraints | OBJ, GeoJSON, DXF, and features as JSON | |
 //! | data in the plane | JSON, CSV | JSON |
+//! | solids | expressions, TOML | |
 //!
 //! ```no_run
 //! use std::path::Path;
@@ -29,29 +34,47 @@
 //! - GPS time, return numbers, normals and extra columns are not kept.
 
 pub mod cloud;
+mod collection;
 pub mod constraints;
+mod drawing;
+mod epsg;
 mod error;
 pub mod features;
 mod format;
 mod guard;
 mod input;
 pub mod mesh;
+pub mod model;
 mod number;
 mod output;
 pub mod planar;
 mod ply;
+pub mod raster;
+pub mod section;
+pub mod solid;
+pub mod table;
 
 pub use cloud::{
     CloudFile, LinearUnit, NO_CLASS, NO_COLOR, NO_INTENSITY, ReadReport, Source, read_cloud, read_cloud_bytes,
     read_clouds, write_cloud,
 };
-pub use constraints::{ConstraintFile, ConstraintFormat, read_constraints, read_constraints_bytes};
+pub use constraints::{
+    ConstraintFile, ConstraintFormat, Footprint, read_constraints, read_constraints_bytes, read_footprints,
+    read_footprints_bytes,
+};
 pub use error::{IoError, shown};
 pub use features::{FeatureFile, FeatureFormat, FeatureOutput, read_features, read_features_bytes, write_features};
 pub use format::{CloudFormat, MeshFormat};
 pub use mesh::{WriteOptions, WriteReport, read_mesh, read_mesh_bytes, write_mesh};
+pub use model::{is_model, read_model, read_model_bytes, write_model};
 pub use output::{abandon_writes, check_writable, write_atomically};
 pub use planar::{PlanarData, PlanarFormat, PlanarResult, planar_json, read_planar, read_planar_bytes};
+pub use raster::{Raster, RasterFormat, write_raster};
+pub use section::{Section, SectionFormat, SectionLevel, SectionLine, SectionPlane, plane_frame, write_section};
+pub use solid::{Operands, SolidError, SolidFiles, parse_solid, parse_solid_tree};
+pub use table::{
+    EvaluatedPoints, PositionFile, PositionFormat, TableFormat, read_positions, read_positions_bytes, write_evaluated,
+};
 
 /// The largest coordinate that is read or written, in the unit of the file.
 ///

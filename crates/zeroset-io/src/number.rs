@@ -30,6 +30,23 @@ pub(crate) fn push_fixed(out: &mut Vec<u8>, value: f64, decimals: u32) {
     }
 }
 
+/// Appends `value` with at most so many decimals, without zeros at its end.
+pub(crate) fn push_trimmed(out: &mut Vec<u8>, value: f64, decimals: u32) {
+    let start = out.len();
+    push_fixed(out, value, decimals);
+    if out[start..].contains(&b'.') {
+        let kept = out.iter().rposition(|digit| *digit != b'0').unwrap_or(start);
+        out.truncate(if out[kept] == b'.' { kept } else { kept + 1 });
+    }
+}
+
+/// The same as a text.
+pub(crate) fn trimmed(value: f64, decimals: u32) -> String {
+    let mut out = Vec::new();
+    push_trimmed(&mut out, value, decimals);
+    String::from_utf8_lossy(&out).into_owned()
+}
+
 /// Appends a whole number.
 pub(crate) fn push_integer(out: &mut Vec<u8>, mut value: u64) {
     let mut digits = [0_u8; 20];
@@ -73,6 +90,14 @@ mod tests {
         assert_eq!(fixed(2_600_000.123, 4), "2600000.1230");
         assert_eq!(fixed(0.05, 2), "0.05");
         assert_eq!(fixed(1e15, 3), "1000000000000000.000");
+    }
+
+    #[test]
+    fn zeros_at_the_end_go() {
+        for (value, expected) in [(12.5, "12.5"), (100.0, "100"), (-0.0, "0"), (0.1 + 0.2, "0.3"), (-3.25, "-3.25")] {
+            assert_eq!(trimmed(value, 6), expected);
+        }
+        assert_eq!(trimmed(100.0, 0), "100");
     }
 
     #[test]

@@ -9,7 +9,7 @@ use proptest::prelude::*;
 use zeroset::feature::{Edge, FeatureKind, Features, Plane};
 use zeroset_io::{
     ConstraintFile, ConstraintFormat, FeatureOutput, IoError, WriteOptions, read_constraints, read_constraints_bytes,
-    write_features,
+    read_footprints_bytes, write_features,
 };
 
 fn read(suffix: &str, text: &str) -> Result<ConstraintFile, IoError> {
@@ -50,6 +50,29 @@ fn obj() {
     refused("obj", "v 0 0 0\nv 1 1 0\nv 1 0 0\nv 0 1 0\nf 1 2 3 4\n", "cross");
     refused("obj", "v 0 0 0\np 1\n", "no lines or polygons in it, only 1");
     refused("obj", "{}", "not a OBJ file");
+}
+
+/// Numbers of rings of the footprints of closed lines, each given by its lowest and highest corner.
+fn footprints(boxes: &[[f64; 4]]) -> Vec<usize> {
+    let ring = |[a, b, c, d]: &[f64; 4]| format!("[[{a},{b}],[{c},{b}],[{c},{d}],[{a},{d}],[{a},{b}]]");
+    let lines = boxes.iter().map(ring).collect::<Vec<_>>().join(",");
+    let text = format!(r#"{{"type":"MultiLineString","coordinates":[{lines}]}}"#);
+    let found = read_footprints_bytes(Path::new("plan.geojson"), ConstraintFormat::GeoJson, text.as_bytes()).unwrap();
+    assert!(found.iter().flatten().all(|ring| ring.len() == 4));
+    found.iter().map(Vec::len).collect()
+}
+
+#[test]
+fn closed_lines_in_others_are_holes() {
+    let house = [84_800.0, 447_400.0, 84_810.0, 447_410.0];
+    let court = [84_802.0, 447_402.0, 84_808.0, 447_408.0];
+    let shed = [84_803.0, 447_403.0, 84_804.0, 447_404.0];
+    let neighbor = [84_810.0, 447_400.0, 84_815.0, 447_410.0];
+    assert_eq!(footprints(&[house]), [1]);
+    assert_eq!(footprints(&[court, shed, house, neighbor]), [1, 2, 1]);
+    // A hole that touches its outline from within, and one house drawn twice.
+    assert_eq!(footprints(&[house, [84_800.0, 447_402.0, 84_803.0, 447_403.0]]), [2]);
+    assert_eq!(footprints(&[house, house]), [1, 1]);
 }
 
 #[test]

@@ -47,6 +47,26 @@ fn write_seeds() {
     let drawing = "0|SECTION|2|ENTITIES|0|LWPOLYLINE|90|2|38|1|10|0|20|0|42|1|10|2|20|0|0|ENDSEC|0|EOF|";
     write("constraints_dxf".into(), "sound", drawing.replace('|', "\n").into());
     write("planar_csv".into(), "sound", "x,y,weight\n1,2,3\n# c\n4 5;6\n".into());
+    let solid = "subtract(box(0,0,0; 9,9,9) rotate(z,30deg; 1,2,3); union(a.ply; sphere(1,2,3; 4)) shell(1); mesh(\"b c.obj\"))";
+    write("solid_expression".into(), "sound", solid.into());
+    let tree = "[solid]\nop = 'shell'\nthickness = 1\nof = [{ expr = 'sphere(1,2,3; 4)', rotate = { axis = 'z', degrees = 30 }, at = [1,2,3] }]\n";
+    write("solid_tree".into(), "sound", tree.into());
+    let mut npy =
+        b"\x93NUMPY\x01\x00\x40\x00{'descr': '<f8', 'fortran_order': False, 'shape': (1, 3), }    \n".to_vec();
+    npy.extend([1.0_f64, 2.0, 3.0].iter().flat_map(|value| value.to_le_bytes()));
+    write("table_npy".into(), "sound", npy);
+    // As they are, and as the header, a zero and the data, for which the target makes checksums.
+    for (name, bytes) in
+        [("fitted", common::sound_model()), ("every", common::model_bytes(&common::model(common::every_solid())))]
+    {
+        let end = 24 + u64::from_le_bytes(bytes[16..24].try_into().unwrap()) as usize;
+        write(
+            "model_zset".into(),
+            &format!("{name}_parts"),
+            [bytes[24..end].trim_ascii_end(), b"\0", &bytes[end..]].concat(),
+        );
+        write("model_zset".into(), name, bytes);
+    }
     let stl = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n";
     write("mesh_stl".into(), "text", stl.into());
     write("mesh_obj".into(), "forms", "v 0 0 0 1 0 0\nv 1 0 0\nv 0 1 0\nf 1/1/1 2//2 -1\nf 1 2 \\\n3\n".into());

@@ -6,6 +6,8 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use common::{Parts, read_bad, sound_model, wrapped};
+use serde_json::json;
 use zeroset_io::{CloudFormat, MeshFormat, read_cloud_bytes, read_mesh_bytes};
 
 /// The system's allocator, and the most that was taken at any time.
@@ -44,6 +46,9 @@ fn peak(work: impl FnOnce()) -> usize {
 
 /// For files of some hundred bytes.
 const SMALL: usize = 1 << 20;
+/// A model takes this many times its file: a block without a known node is 136 bytes there, and 2.3 kB in memory. Lists of short texts take as
+/// much while they grow.
+const MODEL_REL: usize = 26;
 /// LAZ may repeat one point at next to no cost, so up to a million points are always believed.
 const LAZ: usize = 80 << 20;
 
@@ -84,4 +89,61 @@ fn damaged_files_take_little_memory() {
             assert!(found < SMALL, "{name}: {found} bytes");
         });
     }
+    for sound in [sound_model(), common::model_bytes(&common::model(common::every_solid()))] {
+        damaged(&sound, |bytes| {
+            let found = peak(|| drop(read_bad(&bytes)));
+            assert!(found < SMALL, "{found} bytes for a model");
+        });
+    }
+    for (name, bytes) in hostile_models() {
+        let found = peak(|| drop(read_bad(&bytes)));
+        let rel = found as f64 / bytes.len() as f64;
+        println!("{name}: {rel:.1} times {} bytes", bytes.len());
+        assert!(found < MODEL_REL * bytes.len() + SMALL, "{name}: {rel:.1} times {} bytes", bytes.len());
+    }
+}
+
+/// Models with sound checksums, of contents that take much more memory than file.
+fn hostile_models() -> Vec<(&'static str, Vec<u8>)> {
+    // Lists are longest in memory just after they have grown.
+    const MANY: usize = (1 << 17) + 1;
+    let list = |item: &str| vec![item; MANY].join(",");
+    let of = |text: String| wrapped(text.as_bytes(), &[]);
+    let rest = r#""solid":[]"#;
+    let mut blocks = Parts::of(&sound_model());
+    let count = 128_u64.pow(2);
+    blocks.header["models"][0]["lattice"]["blocks"] = json!([4, 4, 1]);
+    blocks.header["models"][0]["lattice"]["finest"] = json!(5);
+    for (name, content) in [
+        ("keys", (0..count).flat_map(u64::to_le_bytes).collect()),
+        ("known", vec![0; 64 * count as usize]),
+        ("inside", vec![0; 64 * count as usize]),
+        ("values", Vec::new()),
+    ] {
+        let name = format!("models/0/{name}");
+        let first = if name.ends_with("values") { 0 } else { count };
+        blocks.header["arrays"][&name]["shape"][0] = json!(first);
+        blocks.arrays.insert(name, content);
+    }
+    let arrays: Vec<String> =
+        (0..MANY).map(|i| format!(r#""{i}":{{"dtype":"|u1","shape":[0],"offset":0,"crc32":0}}"#)).collect();
+    vec![
+        ("blocks", blocks.bytes()),
+        ("numbers in an unknown key", of(format!(r#"{{"a":[{}],{rest}}}"#, list("0")))),
+        ("lists in an unknown key", of(format!(r#"{{"a":[{}],{rest}}}"#, list("[]")))),
+        ("numbers in an unknown operand", of(format!(r#"{{"solid":[{{"a":[{}]}}]}}"#, list("0")))),
+        (
+            "numbers in an unknown part of an operand",
+            of(format!(r#"{{"solid":[{{"ball":{{"a":[{}]}}}}]}}"#, list("0"))),
+        ),
+        ("operands", of(format!(r#"{{"solid":[{}]}}"#, list(r#"{"mesh":{"mesh":0}}"#)))),
+        ("balls", of(format!(r#"{{"solid":[{}]}}"#, list(r#"{"ball":{"center":[0,0,0],"radius":1}}"#)))),
+        ("operands of an operand", of(format!(r#"{{"solid":[{{"union":{{"of":[{}]}}}}]}}"#, list("0")))),
+        ("rings", of(format!(r#"{{"solid":[{{"prism":{{"rings":[{}],"heights":[0,1]}}}}]}}"#, list("[]")))),
+        ("corners", of(format!(r#"{{"solid":[{{"prism":{{"rings":[[{}]],"heights":[0,1]}}}}]}}"#, list("[0,0]")))),
+        ("small rings", of(format!(r#"{{"solid":[{{"prism":{{"rings":[{}],"heights":[0,1]}}}}]}}"#, list("[[0,0]]")))),
+        ("meshes", of(format!(r#"{{"meshes":[{}],{rest}}}"#, list(r#"{"world_from_local":[0,0,0]}"#)))),
+        ("inputs", of(format!(r#"{{"provenance":{{"zeroset":"","inputs":[{}]}},{rest}}}"#, list("\"\"")))),
+        ("arrays", of(format!(r#"{{"arrays":{{{}}},{rest}}}"#, arrays.join(",")))),
+    ]
 }

@@ -72,7 +72,8 @@ pub fn read_clouds(paths: &[PathBuf]) -> Result<CloudFile, IoError> {
     Ok(joined.ok_or(IoError::NoInput)?.into_file())
 }
 
-fn world(path: &Path, format: CloudFormat, bytes: Vec<u8>) -> Result<report::WorldCloud, IoError> {
+/// The points before the offset is taken off.
+pub(crate) fn world(path: &Path, format: CloudFormat, bytes: Vec<u8>) -> Result<report::WorldCloud, IoError> {
     if bytes.is_empty() {
         return Err(IoError::Empty { path: path.to_path_buf() });
     }

@@ -2,19 +2,18 @@
 //!
 //! Blocks are not expanded, and sheets of paper are passed over.
 
-use std::path::Path;
-
 use dxf::entities::{EntityType, LwPolyline, Polyline};
 use dxf::{Drawing, Point, Vector};
 
-use super::{ConstraintFile, Gathered, Item};
+use super::{Gathered, Item};
 use crate::IoError;
 use crate::guard::without_panic;
 
 /// Arcs are cut into parts that turn by this at most: 10 degrees.
 const ARC: f64 = 0.175;
 
-pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<ConstraintFile, IoError> {
+pub(super) fn read(gathered: &mut Gathered<'_>, bytes: &[u8]) -> Result<(), IoError> {
+    let path = gathered.path;
     // A drawing begins with a code, 0 or 999, or says what it is.
     let first = bytes.split(|b| *b == b'\n').next().unwrap_or_default().trim_ascii();
     if !(first == b"0" || first == b"999" || first.starts_with(b"AutoCAD")) {
@@ -24,7 +23,6 @@ pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<ConstraintFile, IoError>
     let failed = |message| IoError::Decode { path: path.to_path_buf(), format: "DXF", message };
     let drawing = without_panic(|| Drawing::load(&mut &bytes[..])).map_err(failed)?;
     let drawing = drawing.map_err(|error| failed(error.to_string()))?;
-    let mut gathered = Gathered::new(path);
     gathered.file.crs = crs(bytes);
     for (i, entity) in (0..).zip(drawing.entities()) {
         if entity.common.is_in_paper_space {
@@ -36,7 +34,7 @@ pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<ConstraintFile, IoError>
             EntityType::LwPolyline(line) => {
                 gathered.line(("LWPOLYLINE, entity", i), &light(line, entity.common.elevation))?;
             }
-            EntityType::Polyline(line) => polyline(&mut gathered, i, line)?,
+            EntityType::Polyline(line) => polyline(gathered, i, line)?,
             EntityType::Face3D(face) => {
                 let corners = [&face.first_corner, &face.second_corner, &face.third_corner, &face.fourth_corner];
                 gathered.polygon(("3DFACE, entity", i), &[corners.map(at).to_vec()])?;
@@ -44,7 +42,7 @@ pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<ConstraintFile, IoError>
             _ => gathered.pass_over(),
         }
     }
-    Ok(gathered.file)
+    Ok(())
 }
 
 fn at(p: &Point) -> [f64; 3] {

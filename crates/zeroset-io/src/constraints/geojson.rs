@@ -1,19 +1,17 @@
 //! Lines and polygons of a GeoJSON (RFC 7946), in the reference system that its member `crs` names.
 
-use std::path::Path;
-
 use geojson::{GeoJson, Geometry, GeometryValue, JsonObject, Position};
 
-use super::{ConstraintFile, Gathered, Item};
+use super::{Gathered, Item};
 use crate::IoError;
 use crate::format::sniff;
 
-pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<ConstraintFile, IoError> {
+pub(super) fn read(gathered: &mut Gathered<'_>, bytes: &[u8]) -> Result<(), IoError> {
+    let path = gathered.path;
     if !bytes.trim_ascii_start().starts_with(b"{") {
         return Err(IoError::WrongMagic { path: path.to_path_buf(), expected: "GeoJSON", looks: sniff(bytes) });
     }
     let file: GeoJson = serde_json::from_slice(bytes).map_err(|error| crate::planar::damaged_json(path, &error))?;
-    let mut gathered = Gathered::new(path);
     let members = match &file {
         GeoJson::FeatureCollection(collection) => &collection.foreign_members,
         GeoJson::Feature(feature) => &feature.foreign_members,
@@ -24,18 +22,18 @@ pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<ConstraintFile, IoError>
         GeoJson::FeatureCollection(collection) => {
             for (i, feature) in (0..).zip(&collection.features) {
                 match &feature.geometry {
-                    Some(geometry) => add(&mut gathered, ("feature", i), geometry)?,
+                    Some(geometry) => add(gathered, ("feature", i), geometry)?,
                     None => gathered.pass_over(),
                 }
             }
         }
         GeoJson::Feature(feature) => match &feature.geometry {
-            Some(geometry) => add(&mut gathered, ("feature", 0), geometry)?,
+            Some(geometry) => add(gathered, ("feature", 0), geometry)?,
             None => gathered.pass_over(),
         },
-        GeoJson::Geometry(geometry) => add(&mut gathered, ("geometry", 0), &geometry)?,
+        GeoJson::Geometry(geometry) => add(gathered, ("geometry", 0), &geometry)?,
     }
-    Ok(gathered.file)
+    Ok(())
 }
 
 fn add(gathered: &mut Gathered<'_>, item: Item, geometry: &Geometry) -> Result<(), IoError> {
@@ -57,22 +55,22 @@ fn add(gathered: &mut Gathered<'_>, item: Item, geometry: &Geometry) -> Result<(
 }
 
 fn line(gathered: &mut Gathered<'_>, item: Item, coordinates: &[Position]) -> Result<(), IoError> {
-    let positions = positions(gathered.path, item, coordinates)?;
+    let positions = positions(gathered, item, coordinates)?;
     gathered.line(item, &positions)
 }
 
 fn polygon(gathered: &mut Gathered<'_>, item: Item, coordinates: &[Vec<Position>]) -> Result<(), IoError> {
-    let path = gathered.path;
-    let rings = coordinates.iter().map(|ring| positions(path, item, ring)).collect::<Result<Vec<_>, _>>()?;
+    let rings = coordinates.iter().map(|ring| positions(gathered, item, ring)).collect::<Result<Vec<_>, _>>()?;
     gathered.polygon(item, &rings)
 }
 
-fn positions(path: &Path, (item, index): Item, coordinates: &[Position]) -> Result<Vec<[f64; 3]>, IoError> {
-    let position = |position: &Position| match position.as_slice() {
-        &[x, y, z, ..] => Ok([x, y, z]),
+fn positions(gathered: &Gathered<'_>, (item, index): Item, coordinates: &[Position]) -> Result<Vec<[f64; 3]>, IoError> {
+    let position = |position: &Position| match *position.as_slice() {
+        [x, y, z, ..] => Ok([x, y, z]),
+        [x, y] if gathered.plan.is_some() => Ok([x, y, 0.0]),
         _ => {
             let what = format!("{item} {index} has positions without heights, and a surface needs them");
-            Err(IoError::malformed(path, what, "give each position as [x, y, z]"))
+            Err(IoError::malformed(gathered.path, what, "give each position as [x, y, z]"))
         }
     };
     coordinates.iter().map(position).collect()

@@ -13,12 +13,17 @@
 mod dxf;
 mod geojson;
 mod obj;
+mod plan;
 
 use std::path::Path;
 
 use serde::Deserialize;
 use serde_json::Value;
 use zeroset::constraint::{ConstraintError, Constraints};
+
+pub use plan::{Footprint, read_footprints, read_footprints_bytes};
+
+use plan::Plan;
 
 use crate::features::FeatureFile;
 use crate::input::read_file;
@@ -75,7 +80,7 @@ impl ConstraintFile {
 /// The EPSG code of the horizontal system in the text of a reference system: `EPSG:n`, `EPSG:n+m` or WKT.
 #[must_use]
 pub fn epsg(crs: &str) -> Option<u32> {
-    crate::features::epsg_code(crs)
+    crate::epsg::code(crs)
 }
 
 /// Reads lines and polygons; the suffix tells the format.
@@ -96,25 +101,41 @@ pub fn read_constraints(path: &Path) -> Result<ConstraintFile, IoError> {
 /// # Errors
 /// As [`read_constraints`].
 pub fn read_constraints_bytes(path: &Path, format: ConstraintFormat, bytes: &[u8]) -> Result<ConstraintFile, IoError> {
+    let file = gather(path, format, bytes, None)?.file;
+    if file.constraints.is_empty() {
+        return Err(nothing(path, "lines or polygons", file.passed_over));
+    }
+    Ok(file)
+}
+
+/// Reads all lines and polygons of a file, as parts of a surface or in plan.
+fn gather<'a>(
+    path: &'a Path,
+    format: ConstraintFormat,
+    bytes: &[u8],
+    plan: Option<Plan>,
+) -> Result<Gathered<'a>, IoError> {
     if bytes.is_empty() {
         return Err(IoError::Empty { path: path.to_path_buf() });
     }
     let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
-    let file = match format {
-        ConstraintFormat::Obj => obj::read(path, bytes)?,
-        ConstraintFormat::GeoJson => geojson::read(path, bytes)?,
-        ConstraintFormat::Json if is_geojson(bytes) => geojson::read(path, bytes)?,
-        ConstraintFormat::Json => of_features(path, &read_features_bytes(path, bytes)?)?,
-        ConstraintFormat::Dxf => dxf::read(path, bytes)?,
-    };
-    if file.constraints.is_empty() {
-        let what = match file.passed_over {
-            0 => "there are no lines or polygons in it".to_owned(),
-            n => format!("there are no lines or polygons in it, only {n} other items"),
-        };
-        return Err(IoError::malformed(path, what, "check the program that wrote it"));
+    let mut gathered = Gathered { path, file: ConstraintFile::default(), plan };
+    match format {
+        ConstraintFormat::Obj => obj::read(&mut gathered, bytes)?,
+        ConstraintFormat::GeoJson => geojson::read(&mut gathered, bytes)?,
+        ConstraintFormat::Json if is_geojson(bytes) => geojson::read(&mut gathered, bytes)?,
+        ConstraintFormat::Json => of_features(&mut gathered, &read_features_bytes(path, bytes)?)?,
+        ConstraintFormat::Dxf => dxf::read(&mut gathered, bytes)?,
     }
-    Ok(file)
+    Ok(gathered)
+}
+
+fn nothing(path: &Path, wanted: &str, passed_over: usize) -> IoError {
+    let what = match passed_over {
+        0 => format!("there are no {wanted} in it"),
+        n => format!("there are no {wanted} in it, only {n} other items"),
+    };
+    IoError::malformed(path, what, "check the program that wrote it")
 }
 
 /// Whether an object has the `type` that all of GeoJSON has.
@@ -128,12 +149,11 @@ fn is_geojson(bytes: &[u8]) -> bool {
 }
 
 /// Planes as polygons and edges as lines.
-fn of_features(path: &Path, file: &FeatureFile) -> Result<ConstraintFile, IoError> {
+fn of_features(gathered: &mut Gathered<'_>, file: &FeatureFile) -> Result<(), IoError> {
     let features = &file.features;
     let at = |positions: &Vec<[f64; 3]>| -> Vec<[f64; 3]> {
         positions.iter().map(|p| world(*p, features.world_from_local)).collect()
     };
-    let mut gathered = Gathered::new(path);
     for (i, plane) in features.planes.iter().enumerate() {
         gathered.polygon(("plane", i as u64), &plane.rings.iter().map(at).collect::<Vec<_>>())?;
     }
@@ -141,32 +161,36 @@ fn of_features(path: &Path, file: &FeatureFile) -> Result<ConstraintFile, IoErro
         gathered.line(("edge", i as u64), &at(&edge.polyline))?;
     }
     gathered.file.crs.clone_from(&features.crs);
-    Ok(gathered.file)
+    Ok(())
 }
 
 /// What was read so far.
 struct Gathered<'a> {
     path: &'a Path,
     file: ConstraintFile,
+    /// Takes the place of the constraints where only the plan counts.
+    plan: Option<Plan>,
 }
 
 /// What a thing is in its file, and its number there.
 type Item = (&'static str, u64);
 
-impl<'a> Gathered<'a> {
-    fn new(path: &'a Path) -> Self {
-        Self { path, file: ConstraintFile::default() }
-    }
-
+impl Gathered<'_> {
     fn line(&mut self, item: Item, positions: &[[f64; 3]]) -> Result<(), IoError> {
         self.in_range(item, positions)?;
-        let added = self.file.constraints.line(positions);
+        let added = match &mut self.plan {
+            Some(plan) => plan.line(positions),
+            None => self.file.constraints.line(positions),
+        };
         self.added(item, added)
     }
 
     fn polygon(&mut self, item: Item, rings: &[Vec<[f64; 3]>]) -> Result<(), IoError> {
         rings.iter().try_for_each(|ring| self.in_range(item, ring))?;
-        let added = self.file.constraints.polygon(rings);
+        let added = match &mut self.plan {
+            Some(plan) => plan.polygon(rings),
+            None => self.file.constraints.polygon(rings),
+        };
         self.added(item, added)
     }
 

@@ -1,8 +1,6 @@
 //! Lines and faces of a Wavefront OBJ.
 
-use std::path::Path;
-
-use super::{ConstraintFile, Gathered, Item};
+use super::{Gathered, Item};
 use crate::IoError;
 use crate::mesh::joined_lines;
 use crate::mesh::text::{integer, lines, number, tokens};
@@ -13,14 +11,14 @@ struct Element {
     vertices: Vec<i64>,
 }
 
-pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<ConstraintFile, IoError> {
+pub(super) fn read(gathered: &mut Gathered<'_>, bytes: &[u8]) -> Result<(), IoError> {
+    let path = gathered.path;
     let wrong =
         || IoError::WrongMagic { path: path.to_path_buf(), expected: "OBJ", looks: crate::format::sniff(bytes) };
     if bytes.iter().take(4096).any(|b| *b == 0) {
         return Err(wrong());
     }
     let text = joined_lines(bytes);
-    let mut gathered = Gathered::new(path);
     let (mut vertices, mut elements) = (Vec::<[f64; 3]>::new(), Vec::new());
     for (at, line) in lines(&text) {
         let mut words = tokens(line);
@@ -68,5 +66,5 @@ pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<ConstraintFile, IoError>
             gathered.polygon(item, &[positions])?
         }
     }
-    Ok(gathered.file)
+    Ok(())
 }

@@ -1,11 +1,10 @@
 //! Features as GeoJSON (RFC 7946), in the reference system of the input.
 
-use serde::Serialize;
 use serde_json::{Map, Value, json};
 use zeroset::feature::{Features, Plane};
 
-use super::{FeatureOutput, epsg};
-use crate::LinearUnit;
+use super::FeatureOutput;
+use crate::collection::{Collection, feature};
 use crate::mesh::world;
 
 /// The vertical part of the normal of a plane within a degree of upright is at most the sine of that.
@@ -57,47 +56,8 @@ pub(super) fn text(output: FeatureOutput<'_>) -> String {
         });
         feature(json!({ "type": "Point", "coordinates": position }), properties)
     });
-    let code = features.crs.as_deref().and_then(epsg::code);
-    let name = code.map(|code| format!("urn:ogc:def:crs:EPSG::{code}"));
-    let file = Collection {
-        kind: "FeatureCollection",
-        generator: &output.options.generator,
-        crs: name.map(|name| json!({ "type": "name", "properties": { "name": name } })),
-        crs_text: features.crs.as_deref().filter(|_| code.is_none()),
-        unit: output.options.unit.map(LinearUnit::name),
-        features: planes.chain(edges).chain(corners).collect(),
-    };
-    // Plain structures with names for keys always serialise.
-    let mut text = serde_json::to_string(&file).unwrap_or_default();
-    text.push('\n');
-    text
-}
-
-/// The file. Programs look for the type in the first bytes, so it comes first, here and below.
-#[derive(Serialize)]
-struct Collection<'a> {
-    #[serde(rename = "type")]
-    kind: &'static str,
-    generator: &'a str,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    crs: Option<Value>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    crs_text: Option<&'a str>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    unit: Option<&'static str>,
-    features: Vec<Feature>,
-}
-
-#[derive(Serialize)]
-struct Feature {
-    #[serde(rename = "type")]
-    kind: &'static str,
-    properties: Value,
-    geometry: Value,
-}
-
-fn feature(geometry: Value, properties: Value) -> Feature {
-    Feature { kind: "Feature", properties, geometry }
+    let all = planes.chain(edges).chain(corners).collect();
+    Collection::new(features.crs.as_deref(), output.options, all).text()
 }
 
 /// The geometry, and what else is to be said about it; `None` for a plane without a polygon.

@@ -10,8 +10,6 @@
 
 mod check;
 mod dxf;
-mod epsg;
-pub(crate) use epsg::code as epsg_code;
 mod geojson;
 mod json;
 mod obj;

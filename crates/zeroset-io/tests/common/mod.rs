@@ -6,8 +6,10 @@ use zeroset::cloud::{Attributes, Cloud};
 use zeroset::mesh::Mesh;
 use zeroset_io::{CloudFormat, MeshFormat, WriteOptions, write_cloud, write_mesh};
 
+mod models;
 mod shared_data;
 
+pub use models::*;
 pub use shared_data::shared_data;
 
 /// A folder of the test's own.

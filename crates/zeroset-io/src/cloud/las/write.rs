@@ -255,8 +255,7 @@ fn epsg_codes(crs: &str) -> Option<(u16, Option<u16>)> {
 
 fn geo_keys(codes: &(u16, Option<u16>)) -> Vec<u8> {
     let (horizontal, vertical) = *codes;
-    // Codes of geographic systems are 4001 to 4999.
-    let (model, key) = if (4001..5000).contains(&horizontal) { (2, 2048) } else { (1, 3072) };
+    let (model, key) = if crate::epsg::is_geographic(horizontal.into()) { (2, 2048) } else { (1, 3072) };
     let mut entries = vec![[1024, 0, 1, model], [key, 0, 1, horizontal]];
     entries.extend(vertical.map(|vertical| [4096, 0, 1, vertical]));
     let head = [1, 1, 0, entries.len() as u16];

@@ -1,4 +1,8 @@
-//! The EPSG code in the text of a reference system.
+//! EPSG codes in the text of a reference system.
+
+mod geographic;
+
+pub(crate) use geographic::is_geographic;
 
 /// The code of the horizontal system, out of `EPSG:n`, `EPSG:n+m` or WKT. `None` if the text states none.
 pub(crate) fn code(crs: &str) -> Option<u32> {
@@ -7,10 +11,44 @@ pub(crate) fn code(crs: &str) -> Option<u32> {
         return codes.split('+').next()?.trim().parse().ok();
     }
     // The outermost of these, in the order of what contains what.
-    const HORIZONTAL: [&str; 8] =
-        ["PROJCS[", "PROJCRS[", "PROJECTEDCRS[", "GEOGCS[", "GEOGCRS[", "GEOGRAPHICCRS[", "GEODCRS[", "GEODETICCRS["];
-    let (at, word) = HORIZONTAL.iter().find_map(|word| Some((crs.find(word)?, word)))?;
-    of_node(&crs[at + word.len()..])
+    PROJECTED.iter().chain(&GEODETIC).find_map(|word| node(crs, word)).and_then(of_node)
+}
+
+/// The code of the vertical system, out of `EPSG:n+m` or WKT.
+pub(crate) fn vertical_code(crs: &str) -> Option<u32> {
+    let crs = crs.trim();
+    if let Some(codes) = crs.strip_prefix("EPSG:").or_else(|| crs.strip_prefix("epsg:")) {
+        return codes.split_once('+')?.1.trim().parse().ok();
+    }
+    VERTICAL.iter().find_map(|word| node(crs, word)).and_then(of_node)
+}
+
+/// Whether a text is WKT of a geographic or a projected system.
+pub(crate) fn wkt_kind(crs: &str) -> Option<Kind> {
+    let any = |words: &[&str]| words.iter().any(|word| crs.contains(word));
+    match (any(&PROJECTED), any(&GEODETIC)) {
+        (true, _) => Some(Kind::Projected),
+        (false, true) => Some(Kind::Geographic),
+        (false, false) => None,
+    }
+}
+
+/// What horizontal coordinates are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Kind {
+    /// Lengths in a map.
+    Projected,
+    /// Angles.
+    Geographic,
+}
+
+const PROJECTED: [&str; 3] = ["PROJCS[", "PROJCRS[", "PROJECTEDCRS["];
+const GEODETIC: [&str; 5] = ["GEOGCS[", "GEOGCRS[", "GEOGRAPHICCRS[", "GEODCRS[", "GEODETICCRS["];
+const VERTICAL: [&str; 3] = ["VERT_CS[", "VERTCRS[", "VERTICALCRS["];
+
+/// What follows the opening bracket of the first node of a name.
+fn node<'a>(crs: &'a str, word: &str) -> Option<&'a str> {
+    Some(&crs[crs.find(word)? + word.len()..])
 }
 
 /// The code that a node of WKT states for itself, given what follows its opening bracket.
@@ -43,7 +81,7 @@ fn of_authority(words: &str) -> Option<u32> {
 
 #[cfg(test)]
 mod tests {
-    use super::code;
+    use super::{Kind, code, is_geographic, vertical_code, wkt_kind};
 
     #[test]
     fn codes_of_the_horizontal_system() {
@@ -57,10 +95,22 @@ mod tests {
         for text in ["EPSG:28992", "EPSG:28992+5709", projected, &compound, second] {
             assert_eq!(code(text), Some(28992), "{text}");
         }
+        for (text, vertical) in [("EPSG:28992", None), ("EPSG:28992+5709", Some(5709)), (&compound, Some(5709))] {
+            assert_eq!(vertical_code(text), vertical, "{text}");
+        }
+        assert_eq!((wkt_kind(&compound), wkt_kind("GEOGCRS[")), (Some(Kind::Projected), Some(Kind::Geographic)));
+        assert_eq!(wkt_kind("EPSG:4326"), None);
         assert_eq!(
             code(r#"GEOGCS["WGS 84",UNIT["degree",1,AUTHORITY["EPSG","9122"]],AUTHORITY["EPSG","4326"]]"#),
             Some(4326)
         );
+    }
+
+    #[test]
+    fn codes_of_geographic_systems() {
+        // WGS 84, ETRS89, Amersfoort, GDA2020; then RD New, ETRS89 / UTM zone 32N in two forms, WGS 84 / Pseudo-Mercator.
+        assert!([4326, 4258, 4289, 7844].into_iter().all(is_geographic));
+        assert!(![28992, 25832, 4647, 3857, 0, u32::MAX].into_iter().any(is_geographic));
     }
 
     #[test]
