@@ -3,10 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use crate::fit2d::Fit2dError;
+use zeroset::contour::FieldContourError;
 use zeroset::feature::{CompareFeaturesError, FeatureError};
 use zeroset::mesh::{CompareError, MeshError};
+use zeroset::model::ModelError;
 use zeroset::reconstruct::ReconstructError;
-use zeroset_io::{IoError, shown};
+use zeroset_io::{IoError, SolidError, shown};
 
 /// Why a command failed. The message names the file and the remedy.
 #[derive(Debug, thiserror::Error)]
@@ -38,6 +40,23 @@ pub(crate) enum CliError {
         own: String,
         /// The box of the points, in words.
         points: String,
+    },
+    /// A solid cannot be read.
+    #[error(transparent)]
+    Solid(#[from] SolidError),
+    /// Something is not possible with a model.
+    #[error("{what}: {source}{}", remedy(source))]
+    Model {
+        /// The model.
+        what: String,
+        /// Why.
+        source: ModelError,
+    },
+    /// Planes that miss a model.
+    #[error("{what}: no plane goes through the surface; give others, or look at its box with zeroset info")]
+    NothingCut {
+        /// The model.
+        what: String,
     },
     /// The fit in the plane is not possible.
     #[error("{}: {source}", shown(input))]
@@ -141,6 +160,16 @@ impl CliError {
             Self::Stdout(error) => error.kind() == std::io::ErrorKind::BrokenPipe,
             _ => false,
         }
+    }
+}
+
+/// The option that helps where the core cannot name it.
+fn remedy(error: &ModelError) -> &'static str {
+    match error {
+        ModelError::Contour(FieldContourError::NoBounds | FieldContourError::EmptyBounds) => " with --bounds",
+        ModelError::Contour(FieldContourError::NoSurface) => "; look elsewhere with --bounds, or with a smaller --cell",
+        ModelError::Contour(FieldContourError::Lattice(_)) => " with --cell",
+        _ => "",
     }
 }
 

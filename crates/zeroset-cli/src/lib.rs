@@ -24,6 +24,7 @@ mod info;
 mod input;
 mod interrupt;
 mod memory;
+mod model;
 mod progress;
 mod reconstruct;
 mod report;
@@ -81,6 +82,13 @@ pub fn main(words: impl IntoIterator<Item = OsString>) -> ExitCode {
 fn run(command: Command) -> Result<(), CliError> {
     match command {
         Command::Reconstruct(args) => reconstruct::run(&args),
+        Command::Fit(args) => model::fit::run(&args),
+        Command::Mesh(args) => model::mesh::run(&args),
+        Command::Edit(args) => model::edit::run(&args),
+        Command::Eval(args) => model::eval::run(&args),
+        Command::Volume(args) => model::volume::run(&args),
+        Command::Slice(args) => model::slice::run(&args),
+        Command::Raster(args) => model::raster::run(&args),
         Command::Features(args) => features::run(&args),
         Command::Fit2d(args) => fit2d::run(&args),
         Command::Sample(args) => sample::run(&args),

@@ -3,6 +3,7 @@
 mod compare;
 mod features;
 mod fit2d;
+mod model;
 mod shared;
 mod simplify;
 mod values;
@@ -17,14 +18,17 @@ use zeroset::sample::SceneKind;
 pub use compare::CompareArgs;
 pub use features::{FeaturesArgs, PostureChoice};
 pub use fit2d::{BasisChoice, BranchesChoice, DomainChoice, Fit2dArgs, NormalizationChoice, SolverChoice};
+pub use model::{BriefRunArgs, EditArgs, EvalArgs, FitArgs, MeshArgs, RasterArgs, SliceArgs, SurfaceArgs, VolumeArgs};
 pub use shared::{InputArgs, RunArgs, SceneArgs, SceneChoice, SimplifyTarget, UpChoice};
 pub use simplify::SimplifyArgs;
-pub use values::{Bounds, Classes, OrAuto, OrOff, Rectangle};
+pub use values::{Bounds, Classes, OrAuto, OrOff, Plane, Rectangle};
 
 const EXAMPLES: &str = "\
 Examples:
   zeroset reconstruct tile.laz -o tile.ply
   zeroset sample torus -o - | zeroset reconstruct - -o torus.ply
+  zeroset fit tile.laz -o tile.zset
+  zeroset edit tile.zset union 'box(84810,447412,0; 84820,447420,12)' -o planned.ply
   zeroset info tile.laz tile.ply";
 
 const RECONSTRUCT_EXAMPLES: &str = "\
@@ -52,6 +56,7 @@ Examples:
 const INFO_EXAMPLES: &str = "\
 Examples:
   zeroset info tile.laz
+  zeroset info tile.zset
   zeroset info mesh.ply --json";
 
 /// Raw point clouds in, implicit models and meshes out. No normals needed.
@@ -68,6 +73,20 @@ pub struct Args {
 pub enum Command {
     /// Turn raw points into a mesh.
     Reconstruct(Box<ReconstructArgs>),
+    /// Turn raw points into a model that can be kept, asked, edited and made into meshes.
+    Fit(Box<FitArgs>),
+    /// Make a mesh of a model.
+    Mesh(MeshArgs),
+    /// Join, cut and subtract models, meshes and shapes.
+    Edit(EditArgs),
+    /// Tell for points how far they are from the surface of a model, on which side, and which way is out.
+    Eval(EvalArgs),
+    /// Measure the volume of a model, or what was cut and filled between two.
+    Volume(VolumeArgs),
+    /// Cut a model along planes: cross-sections, profiles, contour lines.
+    Slice(SliceArgs),
+    /// Make a raster of the heights of a model, a digital surface model.
+    Raster(RasterArgs),
     /// Find planes, edges and corners in raw points.
     Features(Box<FeaturesArgs>),
     /// Fit a curve to points, segments and polygons in the plane, and draw it.
@@ -78,7 +97,7 @@ pub enum Command {
     Simplify(SimplifyArgs),
     /// Measure how well a mesh, or features, agree with the truth.
     Compare(CompareArgs),
-    /// Show what a cloud or a mesh holds.
+    /// Show what a cloud, a mesh or a model holds.
     Info(InfoArgs),
     /// Print completions for a shell.
     Completions(CompletionsArgs),
@@ -112,17 +131,9 @@ pub enum PolygonsChoice {
     Outlines,
 }
 
-/// Arguments of `zeroset reconstruct`.
+/// How points are fitted.
 #[derive(Debug, Clone, clap::Args)]
-#[command(after_help = RECONSTRUCT_EXAMPLES)]
-pub struct ReconstructArgs {
-    /// The points.
-    #[command(flatten)]
-    pub input: InputArgs,
-    /// Mesh to write; the suffix tells the format.
-    #[arg(short, long, value_name = "FILE", required_unless_present = "dry_run")]
-    pub output: Option<PathBuf>,
-
+pub struct FitOptions {
     /// What the points show.
     #[command(flatten)]
     pub scene: SceneArgs,
@@ -156,6 +167,22 @@ pub struct ReconstructArgs {
     /// only the rings are on it [default: faces].
     #[arg(long, value_name = "WHAT", hide_possible_values = true, requires = "constraints")]
     pub constraint_polygons: Option<PolygonsChoice>,
+}
+
+/// Arguments of `zeroset reconstruct`.
+#[derive(Debug, Clone, clap::Args)]
+#[command(after_help = RECONSTRUCT_EXAMPLES)]
+pub struct ReconstructArgs {
+    /// The points.
+    #[command(flatten)]
+    pub input: InputArgs,
+    /// Mesh to write; the suffix tells the format.
+    #[arg(short, long, value_name = "FILE", required_unless_present = "dry_run")]
+    pub output: Option<PathBuf>,
+
+    /// How the points are fitted.
+    #[command(flatten)]
+    pub fit: FitOptions,
     /// Values of the nearest point that each vertex gets: off, rgb, intensity or class [default: rgb].
     #[arg(long, value_name = "WHICH", hide_possible_values = true)]
     pub attributes: Option<AttributesChoice>,
@@ -199,7 +226,7 @@ pub struct SampleArgs {
 #[derive(Debug, Clone, clap::Args)]
 #[command(after_help = INFO_EXAMPLES)]
 pub struct InfoArgs {
-    /// Clouds and meshes; `-` reads lines of x y z from standard input.
+    /// Clouds, meshes and models; `-` reads lines of x y z from standard input.
     #[arg(value_name = "FILE", required = true)]
     pub files: Vec<PathBuf>,
     /// Print JSON, a line for each file.

@@ -10,6 +10,22 @@ pub struct Classes(pub Vec<u8>);
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bounds(pub [[f64; 2]; 3]);
 
+impl Bounds {
+    /// The lower and the upper corner.
+    pub(crate) fn corners(self) -> [[f64; 3]; 2] {
+        [0, 1].map(|end| self.0.map(|side| side[end]))
+    }
+}
+
+/// A plane: a position on it and a normal of any length.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Plane {
+    /// The position.
+    pub point: [f64; 3],
+    /// The normal.
+    pub normal: [f64; 3],
+}
+
 /// A box in the plane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rectangle {
@@ -116,6 +132,22 @@ pub(super) fn bounds(text: &str) -> Result<Bounds, String> {
     Ok(Bounds(sides))
 }
 
+/// A height, or a position and a normal.
+pub(super) fn plane(text: &str) -> Result<Plane, String> {
+    let three = |text: &str| -> Result<[f64; 3], String> {
+        let values = text.split(',').map(number).collect::<Result<Vec<_>, _>>()?;
+        values[..].try_into().map_err(|_| format!("`{}` has not three numbers", text.trim()))
+    };
+    match text.split_once(';') {
+        None if text.contains(',') => Err("a height or x,y,z; nx,ny,nz is needed".into()),
+        None => Ok(Plane { point: [0.0, 0.0, number(text)?], normal: [0.0, 0.0, 1.0] }),
+        Some((point, normal)) => {
+            let (point, normal) = (three(point)?, three(normal)?);
+            if normal == [0.0; 3] { Err("the normal is zero".into()) } else { Ok(Plane { point, normal }) }
+        }
+    }
+}
+
 pub(super) fn rectangle(text: &str) -> Result<Rectangle, String> {
     let values = text.split(',').map(number).collect::<Result<Vec<_>, _>>()?;
     let [x0, y0, x1, y1] = values[..] else { return Err(format!("4 numbers are needed, {} were given", values.len())) };
@@ -197,6 +229,15 @@ mod tests {
         assert_eq!(bounds("-1, -2, 3, 4, -5, 6").map(|b| b.0[2]), Ok([-5.0, 6.0]));
         for text in ["", "1,2,3", "1,2,3,4,5", "3,0,1,1", "a,b,c,d", "0,0,nan,1"] {
             assert!(bounds(text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn planes_are_heights_or_have_a_normal() {
+        assert_eq!(plane("-2.5"), Ok(Plane { point: [0.0, 0.0, -2.5], normal: [0.0, 0.0, 1.0] }));
+        assert_eq!(plane("1,2,3; 0,-1,0"), Ok(Plane { point: [1.0, 2.0, 3.0], normal: [0.0, -1.0, 0.0] }));
+        for text in ["", "1,2,3", "1,2,3;0,0,0", "1,2;0,0,1", "1,2,3;0,0,1;4", "x", "nan"] {
+            assert!(plane(text).is_err(), "{text}");
         }
     }
 

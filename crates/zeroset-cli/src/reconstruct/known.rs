@@ -6,14 +6,14 @@ use zeroset::cloud::Cloud;
 use zeroset::constraint::Constraints;
 use zeroset_io::{ConstraintFile, ConstraintFormat, IoError, read_constraints, shown};
 
-use crate::args::{PolygonsChoice, ReconstructArgs};
+use crate::args::{FitOptions, PolygonsChoice};
 use crate::cloud_box::bounds;
 use crate::console::Lines;
 use crate::error::CliError;
 use crate::table::{count, position};
 
 /// Looks at the names before anything is read.
-pub(super) fn check(paths: &[PathBuf]) -> Result<(), CliError> {
+pub(crate) fn check(paths: &[PathBuf]) -> Result<(), CliError> {
     for path in paths {
         ConstraintFormat::from_path(path)?;
         let facts = std::fs::metadata(path).map_err(|source| IoError::from_system(path, source))?;
@@ -25,7 +25,7 @@ pub(super) fn check(paths: &[PathBuf]) -> Result<(), CliError> {
 }
 
 /// Reads all files.
-pub(super) fn read(args: &ReconstructArgs) -> Result<Vec<ConstraintFile>, CliError> {
+pub(crate) fn read(args: &FitOptions) -> Result<Vec<ConstraintFile>, CliError> {
     let outlines = args.constraint_polygons == Some(PolygonsChoice::Outlines);
     let one = |path: &PathBuf| {
         let mut file = read_constraints(path)?;
@@ -38,7 +38,7 @@ pub(super) fn read(args: &ReconstructArgs) -> Result<Vec<ConstraintFile>, CliErr
 }
 
 /// Holds each file against the points, says what is left out, and takes all together.
-pub(super) fn place(
+pub(crate) fn place(
     files: Vec<ConstraintFile>,
     paths: &[PathBuf],
     cloud: &Cloud,

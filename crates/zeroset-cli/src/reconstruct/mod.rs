@@ -1,6 +1,6 @@
 //! `zeroset reconstruct`.
 
-mod known;
+pub(crate) mod known;
 mod text;
 
 use std::time::Instant;
@@ -14,7 +14,7 @@ use zeroset::reconstruct::{
 };
 use zeroset_io::{CloudFormat, MeshFormat, WriteOptions, shown, write_mesh};
 
-use crate::args::{AttributesChoice, OrAuto, OrOff, QualityChoice, ReconstructArgs, SceneChoice};
+use crate::args::{AttributesChoice, FitOptions, OrAuto, OrOff, QualityChoice, ReconstructArgs, RunArgs, SceneChoice};
 use crate::console::{Console, Lines};
 use crate::error::{CliError, in_words};
 use crate::input::{Input, SURVEYED, announced, check_inputs, check_outputs, refuse_mesh_stream, scene, up};
@@ -26,8 +26,12 @@ pub(crate) fn run(args: &ReconstructArgs) -> Result<(), CliError> {
     let start = Instant::now();
     let console = Console::of(&args.run);
     let formats = check(args)?;
-    let mut params = params(args, &formats);
-    let known = known::read(args)?;
+    let mut params = ReconstructParams {
+        simplify: args.simplify.params(),
+        attributes: attributes(args.attributes),
+        ..params(&args.fit, &args.run, &formats)
+    };
+    let known = known::read(&args.fit)?;
     threads::start(args.run.threads)?;
 
     let progress = Progress::new(console);
@@ -39,7 +43,7 @@ pub(crate) fn run(args: &ReconstructArgs) -> Result<(), CliError> {
     }
     let mut lines = Lines::new(console);
     input.describe(console, &mut lines);
-    params.constraints = known::place(known, &args.constraints, &input.cloud, &mut lines)?;
+    params.constraints = known::place(known, &args.fit.constraints, &input.cloud, &mut lines)?;
 
     let progress = Progress::new(console);
     let failed = |source: ReconstructError| CliError::Reconstruct { inputs: in_words(&args.input.inputs), source };
@@ -47,10 +51,10 @@ pub(crate) fn run(args: &ReconstructArgs) -> Result<(), CliError> {
     let mut plan = interrupt::watched(|| plan(&input.cloud, &params, &progress))?.map_err(failed)?;
     seconds.plan = planning.elapsed().as_secs_f64();
     progress.finish();
-    if args.scene.scene == SceneChoice::Auto && params.scene.is_some() {
+    if args.fit.scene.scene == SceneChoice::Auto && params.scene.is_some() {
         plan.report.scene_reason = SURVEYED.to_owned();
     }
-    announce(&plan.report, args, &mut lines);
+    announce(&plan.report, &args.fit, &mut lines);
 
     if args.dry_run {
         lines.release();
@@ -74,7 +78,7 @@ pub(crate) fn run(args: &ReconstructArgs) -> Result<(), CliError> {
 }
 
 /// What was typed, as the core understands it, but for the constraints.
-fn params(args: &ReconstructArgs, formats: &[CloudFormat]) -> ReconstructParams {
+pub(crate) fn params(args: &FitOptions, run: &RunArgs, formats: &[CloudFormat]) -> ReconstructParams {
     ReconstructParams {
         scene: scene(&args.scene, formats),
         up: up(&args.scene),
@@ -100,15 +104,19 @@ fn params(args: &ReconstructArgs, formats: &[CloudFormat]) -> ReconstructParams 
             Some(OrOff::Off) => MinComponent::Off,
             Some(OrOff::Value(least)) => MinComponent::Triangles(least.get()),
         },
-        simplify: args.simplify.params(),
-        attributes: match args.attributes {
-            Some(AttributesChoice::Off) => AttributeChoice::Off,
-            Some(AttributesChoice::Rgb) | None => AttributeChoice::Rgb,
-            Some(AttributesChoice::Intensity) => AttributeChoice::Intensity,
-            Some(AttributesChoice::Class) => AttributeChoice::Class,
-        },
         constraints: Constraints::default(),
-        memory: args.run.memory.unwrap_or_else(memory::default_limit),
+        memory: run.memory.unwrap_or_else(memory::default_limit),
+        ..ReconstructParams::default()
+    }
+}
+
+/// Which values of the points are asked for.
+pub(crate) fn attributes(choice: Option<AttributesChoice>) -> AttributeChoice {
+    match choice {
+        Some(AttributesChoice::Off) => AttributeChoice::Off,
+        Some(AttributesChoice::Rgb) | None => AttributeChoice::Rgb,
+        Some(AttributesChoice::Intensity) => AttributeChoice::Intensity,
+        Some(AttributesChoice::Class) => AttributeChoice::Class,
     }
 }
 
@@ -121,9 +129,9 @@ fn check(args: &ReconstructArgs) -> Result<Vec<CloudFormat>, CliError> {
     let formats = check_inputs(&args.input.inputs)?;
     let outputs = [(args.output.as_deref(), "the output"), (args.run.report.as_deref(), "the report")];
     let outputs: Vec<_> = outputs.into_iter().filter_map(|(path, role)| Some((path?, role))).collect();
-    let read = [&args.input.inputs[..], &args.constraints[..]].concat();
+    let read = [&args.input.inputs[..], &args.fit.constraints[..]].concat();
     check_outputs(&read, &outputs)?;
-    known::check(&args.constraints)?;
+    known::check(&args.fit.constraints)?;
     Ok(formats)
 }
 
@@ -140,7 +148,7 @@ fn missing_attribute(args: &ReconstructArgs, cloud: &Cloud) -> Option<String> {
 }
 
 /// Says what was decided for the user.
-fn announce(plan: &PlanReport, args: &ReconstructArgs, lines: &mut Lines) {
+pub(crate) fn announce(plan: &PlanReport, args: &FitOptions, lines: &mut Lines) {
     if args.scene.scene == SceneChoice::Auto {
         lines.say(announced(plan.scene, &plan.scene_reason));
     }

@@ -1,5 +1,7 @@
 //! `zeroset info`.
 
+mod model;
+
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
@@ -7,8 +9,9 @@ use std::path::Path;
 use serde::Serialize;
 use zeroset::cloud::{Cloud, Spacing};
 use zeroset::mesh::{Mesh, Topology, topology};
-use zeroset_io::{CloudFormat, IoError, LinearUnit, MeshFormat, ReadReport, read_cloud, read_mesh, shown};
+use zeroset_io::{CloudFormat, IoError, LinearUnit, MeshFormat, ReadReport, is_model, read_cloud, read_mesh, shown};
 
+use self::model::ModelInfo;
 use crate::args::InfoArgs;
 use crate::asprs::class_name;
 use crate::cloud_box::bounds;
@@ -38,6 +41,7 @@ pub(crate) fn run(args: &InfoArgs) -> Result<(), CliError> {
 enum Info {
     Cloud(CloudInfo),
     Mesh(MeshInfo),
+    Model(ModelInfo),
 }
 
 #[derive(Debug, Serialize)]
@@ -80,6 +84,9 @@ struct MeshInfo {
 
 impl Info {
     fn of(path: &Path) -> Result<Self, CliError> {
+        if is_model(path) {
+            return Ok(Self::Model(ModelInfo::read(path)?));
+        }
         let Some(format) = mesh_format(path)? else {
             let file = read_cloud(path)?;
             return Ok(Self::Cloud(CloudInfo::new(path, file.report.format.name(), &file.cloud, Some(file.report))));
@@ -107,6 +114,7 @@ impl Info {
         match self {
             Self::Cloud(cloud) => cloud.text(),
             Self::Mesh(mesh) => mesh.text(),
+            Self::Model(model) => model.text(),
         }
     }
 }
@@ -126,14 +134,14 @@ fn mesh_format(path: &Path) -> Result<Option<MeshFormat>, CliError> {
 fn unknown(error: IoError) -> IoError {
     let mut known: Vec<&str> = CloudFormat::KNOWN.iter().map(|(suffix, _)| *suffix).collect();
     let meshes = MeshFormat::KNOWN.iter().map(|(suffix, _)| *suffix);
-    for suffix in meshes {
+    for suffix in meshes.chain(["zset"]) {
         if !known.contains(&suffix) {
             known.push(suffix);
         }
     }
     match error {
         IoError::UnknownSuffix { path, suffix, .. } => {
-            IoError::UnknownSuffix { path, kind: "cloud or mesh", suffix, known: known.join(", ") }
+            IoError::UnknownSuffix { path, kind: "cloud, mesh or model", suffix, known: known.join(", ") }
         }
         other => other,
     }

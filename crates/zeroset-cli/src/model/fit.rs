@@ -1,0 +1,124 @@
+//! `zeroset fit`.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use serde::Serialize;
+use zeroset::model::{Model, Solid};
+use zeroset::reconstruct::{FittedReport, PlanReport, ReconstructError, plan};
+use zeroset_io::{IoError, is_model, shown, write_model};
+
+use super::open::provenance;
+use crate::args::{FitArgs, SceneChoice};
+use crate::console::{Console, Lines};
+use crate::error::{CliError, in_words};
+use crate::input::{Input, Origin, SURVEYED, check_inputs, check_outputs};
+use crate::progress::Progress;
+use crate::reconstruct::{announce, known, params};
+use crate::report::{SCHEMA_VERSION, write_json};
+use crate::table::{bytes, count, length, name, significant};
+use crate::{interrupt, threads};
+
+pub(crate) fn run(args: &FitArgs) -> Result<(), CliError> {
+    let start = Instant::now();
+    let console = Console::of(&args.run);
+    let formats = check(args)?;
+    let mut params = params(&args.fit, &args.run, &formats);
+    let lines_and_polygons = known::read(&args.fit)?;
+    threads::start(args.run.threads)?;
+    let progress = Progress::new(console);
+    let (input, _) = Input::read(&args.input, &progress)?;
+    progress.finish();
+    let mut lines = Lines::new(console);
+    input.describe(console, &mut lines);
+    params.constraints = known::place(lines_and_polygons, &args.fit.constraints, &input.cloud, &mut lines)?;
+
+    let progress = Progress::new(console);
+    let failed = |source: ReconstructError| CliError::Reconstruct { inputs: in_words(&args.input.inputs), source };
+    let mut plan = interrupt::watched(|| plan(&input.cloud, &params, &progress))?.map_err(failed)?;
+    if args.fit.scene.scene == SceneChoice::Auto && params.scene.is_some() {
+        plan.report.scene_reason = SURVEYED.to_owned();
+    }
+    announce(&plan.report, &args.fit, &mut lines);
+    let (fitted, report) = interrupt::watched(|| plan.fit(&progress))?.map_err(failed)?;
+    progress.finish();
+    let names = args.input.inputs.iter().map(|path| path.file_name().unwrap_or(path.as_os_str()));
+    let names = names.map(|name| name.to_string_lossy().into_owned()).collect();
+    let model = Model {
+        solid: Solid::Fitted(Arc::new(fitted)),
+        crs: input.cloud.crs.clone(),
+        provenance: provenance(names, parameters(&report.plan)),
+    };
+    let written = write_model(&args.output, &model)?;
+    lines.release();
+    let unit = input.read.unit;
+    console.say(&format!(
+        "{}: {} from {}{} points ({}, resolution {}) in {} s",
+        shown(&args.output),
+        bytes(written),
+        count(report.plan.points),
+        input.of_all(report.plan.points),
+        name(report.plan.scene),
+        length(report.plan.resolution, unit),
+        significant(start.elapsed().as_secs_f64(), 3),
+    ));
+    let Some(path) = &args.run.report else { return Ok(()) };
+    write_json(
+        path,
+        &Content {
+            schema_version: SCHEMA_VERSION,
+            zeroset_version: env!("CARGO_PKG_VERSION"),
+            origin: Origin::of(&input),
+            fitted: report,
+            bytes: written,
+        },
+    )
+}
+
+#[derive(Debug, Serialize)]
+struct Content<'a> {
+    schema_version: u32,
+    zeroset_version: &'static str,
+    #[serde(flatten)]
+    origin: Origin<'a>,
+    #[serde(flatten)]
+    fitted: FittedReport,
+    /// Size of the model.
+    bytes: u64,
+}
+
+/// What can be told to be wrong before anything is read.
+fn check(args: &FitArgs) -> Result<Vec<zeroset_io::CloudFormat>, CliError> {
+    if !is_model(&args.output) {
+        return Err(IoError::UnknownSuffix {
+            path: args.output.clone(),
+            kind: "model",
+            suffix: args.output.extension().map(|suffix| suffix.to_string_lossy().to_ascii_lowercase()),
+            known: "zset".to_owned(),
+        }
+        .into());
+    }
+    let formats = check_inputs(&args.input.inputs)?;
+    let report = args.run.report.as_deref().map(|path| (path, "the report"));
+    let outputs: Vec<_> = [(args.output.as_path(), "the output")].into_iter().chain(report).collect();
+    let read = [&args.input.inputs[..], &args.fit.constraints[..]].concat();
+    check_outputs(&read, &outputs)?;
+    known::check(&args.fit.constraints)?;
+    Ok(formats)
+}
+
+/// What was decided, for whoever finds the model.
+fn parameters(plan: &PlanReport) -> Vec<(String, String)> {
+    [
+        ("points", plan.points.to_string()),
+        ("scene", name(plan.scene)),
+        ("up", name(plan.up)),
+        ("resolution", plan.resolution.to_string()),
+        ("quality", name(plan.quality)),
+        ("screening", plan.screening.to_string()),
+        ("smoothness", plan.polish.map_or_else(|| "off".to_owned(), |polish| polish.smoothness.to_string())),
+        ("trim", plan.trim.map_or_else(|| "off".to_owned(), |trim| trim.to_string())),
+    ]
+    .map(|(name, value)| (name.to_owned(), value))
+    .to_vec()
+}

@@ -1,0 +1,74 @@
+//! The commands about models: one module for each.
+
+pub(crate) mod edit;
+pub(crate) mod eval;
+pub(crate) mod fit;
+pub(crate) mod mesh;
+pub(crate) mod raster;
+pub(crate) mod slice;
+pub(crate) mod volume;
+
+mod open;
+
+use std::path::Path;
+
+use serde::Serialize;
+use zeroset::model::ModelError;
+use zeroset_io::{WriteReport, shown};
+
+use crate::args::BriefRunArgs;
+use crate::console::Console;
+use crate::error::CliError;
+use crate::progress::Progress;
+use crate::report::{SCHEMA_VERSION, write_json};
+use crate::{interrupt, threads};
+
+/// How much to say.
+fn console(run: &BriefRunArgs) -> Console {
+    if run.quiet { Console::Quiet } else { Console::Normal }
+}
+
+/// Does something that may take long, on the threads that were asked for. `what` names the model in messages.
+fn work<T>(
+    run: &BriefRunArgs,
+    what: &str,
+    work: impl FnOnce(&Progress) -> Result<T, ModelError>,
+) -> Result<T, CliError> {
+    let progress = Progress::new(console(run));
+    let result = interrupt::watched(|| work(&progress))?;
+    progress.finish();
+    result.map_err(|source| CliError::Model { what: what.to_owned(), source })
+}
+
+/// Starts the threads that were asked for.
+fn start(run: &BriefRunArgs) -> Result<(), CliError> {
+    threads::start(run.threads)
+}
+
+/// A report with the version of its shape.
+#[derive(Debug, Serialize)]
+struct Report<T> {
+    schema_version: u32,
+    zeroset_version: &'static str,
+    #[serde(flatten)]
+    content: T,
+}
+
+/// Writes the report, if one was asked for.
+fn write_report(run: &BriefRunArgs, content: impl Serialize) -> Result<(), CliError> {
+    let Some(path) = &run.report else { return Ok(()) };
+    write_json(path, &Report { schema_version: SCHEMA_VERSION, zeroset_version: env!("CARGO_PKG_VERSION"), content })
+}
+
+/// A file that was written, for reports.
+#[derive(Debug, Serialize)]
+struct Written {
+    path: String,
+    bytes: u64,
+}
+
+impl Written {
+    fn new(path: &Path, report: &WriteReport) -> Self {
+        Self { path: shown(path), bytes: report.bytes }
+    }
+}
