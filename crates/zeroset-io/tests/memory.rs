@@ -1,5 +1,6 @@
 //! Memory stays in proportion to a file's true size, whatever counts and lengths it states.
 
+#[path = "formats/common/mod.rs"]
 mod common;
 
 use std::alloc::{GlobalAlloc, Layout, System};
