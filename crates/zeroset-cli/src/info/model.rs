@@ -131,7 +131,7 @@ fn placed(placement: &Placement) -> String {
 impl FittedInfo {
     fn new(fitted: &Fitted) -> Self {
         let parts = fitted.parts();
-        let nodes = fitted.lattice().known.iter().flatten().map(|word| word.count_ones() as usize).sum();
+        let nodes = fitted.lattice().known_nodes();
         Self {
             scene: name(parts.scene),
             cell: fitted.cell(),

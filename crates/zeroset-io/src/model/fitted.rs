@@ -101,7 +101,6 @@ fn read_one(i: usize, header: &ModelHeader, arrays: &Reader<'_>) -> Result<Fitte
         world_from_local: header.world_from_local,
         scene: header.scene,
         frame: header.frame,
-        field,
         metric: header.metric,
         bounds: header.bounds,
         noise: header.noise,
@@ -117,8 +116,8 @@ fn read_one(i: usize, header: &ModelHeader, arrays: &Reader<'_>) -> Result<Fitte
         lines: read_lines(i, arrays)?,
         polygons: arrays.optional(&name("polygons"))?.unwrap_or_default(),
     };
-    check(i, &parts, &parts.field.lattice)?;
-    Fitted::kept(parts).map_err(|error| format!("model {i}: {error}"))
+    check(i, &parts, &field.lattice)?;
+    Fitted::kept(field, parts).map_err(|error| format!("model {i}: {error}"))
 }
 
 fn read_structure(i: usize, curved_creases: bool, arrays: &Reader<'_>) -> Result<Structure, String> {

@@ -10,6 +10,7 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use serde_json::{Value, json};
 use zeroset::cloud::{Attributes, Cloud};
+use zeroset::field::LatticeField;
 use zeroset::fit::cascade::Scene;
 use zeroset::model::{AttributeChoice, Fitted, FittedParts, MeshParams, Model, Solid, mesh};
 use zeroset::reconstruct::{Quality, ReconstructParams, Resolution, plan};
@@ -43,14 +44,12 @@ fn with_constraints(fitted: &Fitted) -> Fitted {
     let p = fitted.parts().points[0].map(f64::from);
     let q: [f64; 3] = std::array::from_fn(|a| p[a] + [0.1, 0.05, 0.0][a]);
     let r: [f64; 3] = std::array::from_fn(|a| p[a] + [0.0, 0.1, 0.0][a]);
-    let field = fitted.lattice().clone();
-    Fitted::kept(FittedParts {
-        field,
+    let parts = FittedParts {
         lines: vec![vec![[p, q], [q, r]], vec![[r, p]]],
         polygons: vec![[p, q, r]],
         ..fitted.parts().clone()
-    })
-    .unwrap()
+    };
+    Fitted::kept(fitted.lattice().clone(), parts).unwrap()
 }
 
 fn read(bytes: &[u8]) -> Model {
@@ -404,8 +403,8 @@ fn what_could_not_be_read_is_not_written() {
     for _ in 0..200 {
         deep = Solid::Complement(Box::new(deep));
     }
-    let parts = || FittedParts { field: small_fitted().lattice().clone(), ..small_fitted().parts().clone() };
-    let far = Fitted::kept(FittedParts { bounds: [[0.0; 3], [1e15; 3]], ..parts() }).unwrap();
+    let parts = FittedParts { bounds: [[0.0; 3], [1e15; 3]], ..small_fitted().parts().clone() };
+    let far = Fitted::kept(small_fitted().lattice().clone(), parts).unwrap();
     for solid in [
         ball(f64::NAN),
         ball(f64::INFINITY),
@@ -424,23 +423,23 @@ fn what_could_not_be_read_is_not_written() {
 fn odd_models_make_no_panic() {
     let first = [2.6_f32, 0.5, 2.0];
     let place = first.map(f64::from);
-    type Change = fn(&mut FittedParts);
+    type Change = fn(&mut LatticeField, &mut FittedParts);
     let changes: [Change; 11] = [
-        |_| {},
-        |parts| parts.points.clear(),
-        |parts| parts.trim = Some(1e-300),
-        |parts| parts.trim = Some(1e11),
-        |parts| (parts.scene, parts.trim) = (Scene::Airborne, Some(1e11)),
-        |parts| parts.field.values.fill(0.0),
-        |parts| parts.field.known.fill([0; 8]),
-        |parts| parts.scene = Scene::Airborne,
-        |parts| parts.noise = 0.0,
-        |parts| parts.noise = 1e11,
-        |parts| parts.min_component = Some(usize::MAX),
+        |_, _| {},
+        |_, parts| parts.points.clear(),
+        |_, parts| parts.trim = Some(1e-300),
+        |_, parts| parts.trim = Some(1e11),
+        |_, parts| (parts.scene, parts.trim) = (Scene::Airborne, Some(1e11)),
+        |field, _| field.values.fill(0.0),
+        |field, _| field.known.fill([0; 8]),
+        |_, parts| parts.scene = Scene::Airborne,
+        |_, parts| parts.noise = 0.0,
+        |_, parts| parts.noise = 1e11,
+        |_, parts| parts.min_component = Some(usize::MAX),
     ];
     for change in changes {
-        let mut parts = FittedParts { field: small_fitted().lattice().clone(), ..small_fitted().parts().clone() };
-        change(&mut parts);
+        let (mut field, mut parts) = (small_fitted().lattice().clone(), small_fitted().parts().clone());
+        change(&mut field, &mut parts);
         let points = parts.points.len();
         parts.points = vec![first; points];
         parts.attributes = Attributes::default();
@@ -450,7 +449,8 @@ fn odd_models_make_no_panic() {
         structure.triangles = vec![[place; 3]];
         structure.plane_of_point = vec![Some(0); points];
         structure.planes[1].1 = 1e11;
-        let model = read(&model_bytes(&model(Solid::Fitted(Arc::new(Fitted::kept(parts).unwrap())))));
+        let fitted = Fitted::kept(field, parts).unwrap();
+        let model = read(&model_bytes(&model(Solid::Fitted(Arc::new(fitted)))));
         let _ = mesh(&model.solid, &MeshParams::default(), &());
         let ball = Solid::Ball { center: [84_812.0, 447_413.0, 2.0], radius: 1.0 };
         let _ = mesh(&Solid::Union(vec![model.solid, ball]), &MeshParams::default(), &());

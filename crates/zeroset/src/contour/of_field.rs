@@ -114,7 +114,7 @@ pub fn contour_field(
     let lattice = lattice_around([low, high], params.cell)?;
     monitor.stage("looking for the surface");
     let (sampled, looked_at) = sampled(field, lattice, monitor)?;
-    let values = sampled.known.iter().flatten().map(|word| word.count_ones() as usize).sum();
+    let values = sampled.known_nodes();
     let blocks = [sampled.blocks.len(), looked_at];
     check(monitor)?;
     monitor.stage("extracting the surface");

@@ -7,7 +7,7 @@
 use rayon::prelude::*;
 
 use super::sharp::meeting;
-use crate::domain::{BLOCK_NODES, Blocks, Mask, NONE, mask_get, mask_set, neighbor_code, shift};
+use crate::domain::{BLOCK_NODES, Blocks, Mask, NONE, mask_count, mask_get, mask_set, neighbor_code, shift};
 use crate::field::{Field, LatticeField};
 use crate::vec3::{self, Vec3};
 
@@ -26,7 +26,7 @@ pub(super) fn blunt(values: &mut LatticeField, field: &dyn Field, reach: f64) ->
         for inside in [true, false] {
             let lonely = lonely(values, inside);
             let found = in_wedges(values, &lonely, field, reach);
-            now += found.iter().flatten().map(|word| word.count_ones() as usize).sum::<usize>();
+            now += found.iter().map(mask_count).sum::<usize>();
             let slight = SLIGHT * values.lattice.spacing as f32;
             let value = if inside { slight } else { -slight };
             values
@@ -52,18 +52,13 @@ pub(super) fn blunt(values: &mut LatticeField, field: &dyn Field, reach: f64) ->
 
 /// The known nodes of a side that no cube of eight nodes of that side holds; unknown nodes are of either side.
 fn lonely(values: &LatticeField, inside: bool) -> Vec<Mask> {
-    let side: Vec<Mask> = values
-        .values
-        .par_chunks_exact(BLOCK_NODES)
-        .zip(&values.known)
-        .map(|(values, known)| {
-            std::array::from_fn(|z| {
-                let of_side = |(i, value): (usize, &f32)| u64::from((*value < 0.0) == inside) << i;
-                let bits = values[64 * z..64 * (z + 1)].iter().enumerate().map(of_side).fold(0, |bits, bit| bits | bit);
-                bits | !known[z]
-            })
-        })
-        .collect();
+    let mut side = values.inside();
+    side.par_iter_mut().zip(&values.known).for_each(|(side, known)| {
+        for z in 0..8 {
+            let own = if inside { side[z] } else { !side[z] };
+            side[z] = own | !known[z];
+        }
+    });
     // First nodes of whole cubes, and then all nodes of these.
     let mut cubes = side.clone();
     for axis in 0..3 {

@@ -23,6 +23,12 @@ pub fn mask_get(mask: &Mask, local: usize) -> bool {
     mask[local >> 6] >> (local & 63) & 1 == 1
 }
 
+/// Number of nodes in the set.
+#[must_use]
+pub fn mask_count(mask: &Mask) -> usize {
+    mask.iter().map(|word| word.count_ones() as usize).sum()
+}
+
 /// Puts node `local` into the set.
 #[inline]
 pub fn mask_set(mask: &mut Mask, local: usize) {

@@ -32,7 +32,7 @@ pub(crate) use bounds::bounds;
 pub(crate) use gather::{Halo, gather, halo_index, replicate_at_domain_faces};
 pub use kuhn::{TETRAHEDRA, Tetrahedron, barycentric, tetrahedron_of};
 pub use lattice::{Lattice, LatticeError};
-pub use mask::{Mask, dilate, dilate_box, mask_get, mask_row, mask_set};
+pub use mask::{Mask, dilate, dilate_box, mask_count, mask_get, mask_row, mask_set};
 pub(crate) use mask::{shift, shifted};
 pub(crate) use morton::encode as morton_code;
 pub use points::{Cells, LatticePoints};

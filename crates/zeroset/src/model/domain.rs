@@ -7,7 +7,7 @@ use super::solid::Leaf;
 use super::{Fitted, ModelError, Solid};
 use crate::cloud::choose_offset;
 use crate::contour::FieldContourError;
-use crate::field::{Field, Placed};
+use crate::field::{Field, Placed, Placement};
 use crate::fit::cascade::Scene;
 use crate::fit::{Frame, Up};
 use crate::vec3::{self, Vec3};
@@ -27,19 +27,24 @@ pub(super) struct Local {
 }
 
 impl Local {
+    /// A solid about the origin of its first fitted model or mesh, else about a position near it.
     pub(super) fn new(solid: &Solid) -> Result<Self, ModelError> {
-        let at = |origin: Vec3| -> Result<Self, ModelError> {
-            let mut leaves = Vec::new();
-            let field = solid.with_leaves(origin, &mut leaves)?;
-            let base = (0..leaves.len()).find(|&tag| is_in_place(&*field, tag));
-            Ok(Self { origin, field, leaves, base })
-        };
-        let there = at([0.0; 3])?;
-        let origin = there.base().map_or_else(
-            || choose_offset(there.field.extent().into_iter().flatten().filter(|corner| vec3::is_finite(*corner))),
-            |base| base.fitted.parts().world_from_local,
-        );
-        if origin == [0.0; 3] { Ok(there) } else { at(origin) }
+        let origin = origin(solid, &of_fitted).or_else(|| origin(solid, &of_mesh));
+        if let Some(origin) = origin {
+            return Self::at(solid, origin);
+        }
+        let there = Self::at(solid, [0.0; 3])?;
+        let corners = there.field.extent().into_iter().flatten();
+        let origin = choose_offset(corners.filter(|corner| vec3::is_finite(*corner)));
+        if origin == [0.0; 3] { Ok(there) } else { Self::at(solid, origin) }
+    }
+
+    /// A solid about a given origin.
+    pub(super) fn at(solid: &Solid, origin: Vec3) -> Result<Self, ModelError> {
+        let mut leaves = Vec::new();
+        let field = solid.with_leaves(origin, &mut leaves)?;
+        let base = (0..leaves.len()).find(|&tag| is_in_place(&*field, tag));
+        Ok(Self { origin, field, leaves, base })
     }
 
     pub(super) fn base(&self) -> Option<&Leaf> {
@@ -90,17 +95,13 @@ impl Local {
 
     /// The box in the frame that holds the surface, or its part in a box of world coordinates.
     pub(super) fn bounds(&self, given: Option<[Vec3; 2]>) -> Result<[Vec3; 2], ModelError> {
-        if let Some(given) = given {
-            if !(0..3).all(|a| given[0][a] < given[1][a]) {
-                return Err(FieldContourError::EmptyBounds.into());
-            }
-            let [low, high] = self.world_box(Some(given))?;
-            if !(0..3).all(|a| low[a] < high[a]) {
+        if given.is_some() {
+            let bounds = self.world_box(given)?;
+            if !is_full(bounds) {
                 return Err(FieldContourError::NoSurface.into());
             }
-            let corner = |k: usize| std::array::from_fn(|a| if k >> a & 1 == 1 { high[a] } else { low[a] });
-            let corners = (0..8).map(|k| self.enter(vec3::sub(corner(k), self.origin)));
-            return Ok(crate::domain::bounds(corners).into());
+            let local = bounds.map(|corner| vec3::sub(corner, self.origin));
+            return Ok(self.frame().entry(self.shift()).of_box(local));
         }
         let [mut low, mut high] = self.turned().extent().ok_or(FieldContourError::NoBounds)?;
         if let Some([first, last]) = self.ground() {
@@ -108,7 +109,7 @@ impl Local {
                 (low[a], high[a]) = (low[a].max(first[a]), high[a].min(last[a]));
             }
         }
-        if !(0..3).all(|a| low[a] < high[a]) {
+        if !is_full([low, high]) {
             return Err(FieldContourError::NoSurface.into());
         }
         if !vec3::is_finite(low) || !vec3::is_finite(high) {
@@ -117,14 +118,18 @@ impl Local {
         Ok([low, high])
     }
 
+    /// The box in local coordinates that holds the surface.
+    pub(super) fn local_box(&self) -> Result<[Vec3; 2], ModelError> {
+        Ok(self.frame().exit(self.shift()).of_box(self.bounds(None)?))
+    }
+
     /// The box that holds the surface, or its part in a box that is given, which may be infinite; both in world coordinates.
     pub(super) fn world_box(&self, given: Option<[Vec3; 2]>) -> Result<[Vec3; 2], ModelError> {
-        if let Some(given) = given.filter(|[low, high]| vec3::is_finite(*low) && vec3::is_finite(*high)) {
+        let given = checked(given)?;
+        if let Some(given) = given.filter(is_finite) {
             return Ok(given);
         }
-        let own = self.bounds(None)?;
-        let corner = |k: usize| std::array::from_fn(|a| own[k >> a & 1][a]);
-        let (low, high) = crate::domain::bounds((0..8).map(|k| vec3::add(self.leave(corner(k)), self.origin)));
+        let [low, high] = self.local_box()?.map(|corner| vec3::add(corner, self.origin));
         Ok(given.map_or([low, high], |given| [vec3::max(low, given[0]), vec3::min(high, given[1])]))
     }
 
@@ -135,8 +140,38 @@ impl Local {
     }
 }
 
+/// A box that is given, if it holds something.
+pub(super) fn checked(given: Option<[Vec3; 2]>) -> Result<Option<[Vec3; 2]>, ModelError> {
+    if given.is_none_or(is_full) { Ok(given) } else { Err(FieldContourError::EmptyBounds.into()) }
+}
+
+/// Whether a box is finite along all axes.
+pub(super) fn is_finite([low, high]: &[Vec3; 2]) -> bool {
+    vec3::is_finite(*low) && vec3::is_finite(*high)
+}
+
+fn is_full([low, high]: [Vec3; 2]) -> bool {
+    (0..3).all(|a| low[a] < high[a])
+}
+
+/// The offset of the first leaf of a kind that is neither turned nor scaled.
+fn origin(solid: &Solid, of: &dyn Fn(&Solid) -> Option<Vec3>) -> Option<Vec3> {
+    match solid {
+        Solid::Placed { placement, .. } if placement.without_shift() != Placement::default() => None,
+        _ => of(solid).or_else(|| solid.operands().iter().find_map(|operand| origin(operand, of))),
+    }
+}
+
+fn of_fitted(solid: &Solid) -> Option<Vec3> {
+    if let Solid::Fitted(fitted) = solid { Some(fitted.parts().world_from_local) } else { None }
+}
+
+fn of_mesh(solid: &Solid) -> Option<Vec3> {
+    if let Solid::Mesh(mesh) = solid { Some(mesh.world_from_local) } else { None }
+}
+
 /// Whether an operand is neither turned nor moved.
 fn is_in_place(field: &dyn Field, tag: usize) -> bool {
     let own = (0..field.sheets()).map(|sheet| field.operand(sheet)).find(|operand| operand.tag == Some(tag));
-    own.is_some_and(|operand| operand.placement == Default::default())
+    own.is_some_and(|operand| operand.placement == Placement::default())
 }

@@ -8,6 +8,7 @@ use super::ModelError;
 use crate::cloud::Attributes;
 use crate::constraint::{Local, LocalPolygon};
 use crate::contour::Known;
+use crate::domain::BLOCK_NODES;
 use crate::feature::{Facets, Flat};
 use crate::field::{Field, LatticeField, LatticeSolid, Metric, Placed, Placement};
 use crate::fit::Frame;
@@ -18,7 +19,7 @@ use crate::vec3::{self, Vec3};
 /// The distance between samples on constraints, over the cell.
 pub(crate) const SAMPLES_REL: f64 = 0.5;
 
-/// A fit as plain data. Positions are local: the world position is the local one plus `world_from_local`.
+/// What is known beside F, as plain data. Positions are local: the world position is the local one plus `world_from_local`.
 #[derive(Debug, Clone)]
 pub struct FittedParts {
     /// What to add to a local position to get the world position.
@@ -27,8 +28,6 @@ pub struct FittedParts {
     pub scene: Scene,
     /// The frame of the fit: the rows of the rotation that leads there from the local frame.
     pub frame: [[f64; 3]; 3],
-    /// F, in the frame of the fit.
-    pub field: LatticeField,
     /// What |F| is.
     pub metric: Metric,
     /// The box of the points.
@@ -75,30 +74,34 @@ pub struct Fitted {
 }
 
 impl Fitted {
-    /// Takes a fit.
+    /// Takes F, in the frame of the fit, and what is known beside it.
     ///
     /// # Errors
     /// If a list is not as long as it should be, an index is out of range, or a number is not finite.
-    pub fn new(parts: FittedParts) -> Result<Self, ModelError> {
-        Self::with(parts, LatticeSolid::new)
+    pub fn new(field: LatticeField, parts: FittedParts) -> Result<Self, ModelError> {
+        Self::with(field, parts, LatticeSolid::new)
     }
 
     /// Takes a fit that was kept: the nodes of F whose value is not known have a sign.
     ///
     /// # Errors
     /// As for [`Self::new`].
-    pub fn kept(parts: FittedParts) -> Result<Self, ModelError> {
-        Self::with(parts, LatticeSolid::filled)
+    pub fn kept(field: LatticeField, parts: FittedParts) -> Result<Self, ModelError> {
+        Self::with(field, parts, LatticeSolid::filled)
     }
 
-    fn with(mut parts: FittedParts, solid: impl Fn(LatticeField, Metric) -> LatticeSolid) -> Result<Self, ModelError> {
+    fn with(
+        field: LatticeField,
+        parts: FittedParts,
+        solid: impl Fn(LatticeField, Metric) -> LatticeSolid,
+    ) -> Result<Self, ModelError> {
+        check_lattice(&field)?;
         parts.check()?;
         let frame = Frame::from_rows(parts.frame).ok_or(ModelError::Inconsistent("its frame is no rotation"))?;
-        let field = std::mem::replace(&mut parts.field, LatticeField::none());
         Ok(Self { solid: Arc::new(solid(field, parts.metric)), frame, parts })
     }
 
-    /// Everything but F, whose place in it is empty: see [`Self::lattice`].
+    /// Everything but F: see [`Self::lattice`].
     #[must_use]
     pub fn parts(&self) -> &FittedParts {
         &self.parts
@@ -202,6 +205,23 @@ impl Evidence {
     }
 }
 
+/// Checks that blocks and values fit together and numbers are finite.
+fn check_lattice(field: &LatticeField) -> Result<(), ModelError> {
+    let wrong = |what: &'static str| Err(ModelError::Inconsistent(what));
+    let blocks = field.blocks.len();
+    if field.known.len() != blocks || field.values.len() != blocks * BLOCK_NODES {
+        return wrong("its blocks and values differ in number");
+    }
+    let extent = field.lattice.blocks_at(field.lattice.finest);
+    if field.blocks.coordinates.iter().any(|c| (0..3).any(|a| c[a] >= extent[a])) {
+        return wrong("a block lies outside of its lattice");
+    }
+    if !field.values.par_iter().all(|v| v.is_finite()) {
+        return wrong("a value is not finite");
+    }
+    Ok(())
+}
+
 impl FittedParts {
     /// Checks that lists fit together and numbers are finite.
     fn check(&self) -> Result<(), ModelError> {
@@ -213,18 +233,6 @@ impl FittedParts {
         }
         if self.trim.is_some_and(|trim| !(trim.is_finite() && trim > 0.0)) {
             return wrong("its trim is not positive");
-        }
-        let field = &self.field;
-        let blocks = field.blocks.len();
-        if field.known.len() != blocks || field.values.len() != blocks * crate::domain::BLOCK_NODES {
-            return wrong("its blocks and values differ in number");
-        }
-        let extent = field.lattice.blocks_at(field.lattice.finest);
-        if field.blocks.coordinates.iter().any(|c| (0..3).any(|a| c[a] >= extent[a])) {
-            return wrong("a block lies outside of its lattice");
-        }
-        if !field.values.par_iter().all(|v| v.is_finite()) {
-            return wrong("a value is not finite");
         }
         if !self.points.par_iter().flatten().all(|c| c.is_finite()) {
             return wrong("a point is not finite");

@@ -100,6 +100,19 @@ pub enum Solid {
 }
 
 impl Solid {
+    /// The solids that it is made of.
+    #[must_use]
+    pub fn operands(&self) -> &[Self] {
+        match self {
+            Self::Union(of) | Self::Intersection(of) => of,
+            Self::Difference(of) | Self::SmoothUnion { of, .. } => of.as_slice(),
+            Self::Complement(of) | Self::Offset { of, .. } | Self::Shell { of, .. } | Self::Placed { of, .. } => {
+                std::slice::from_ref(&**of)
+            }
+            _ => &[],
+        }
+    }
+
     /// F as a function of local positions: the world position less `origin`.
     ///
     /// Fitted models know distances near their surface only: no offset or shell can be made of them. Make a mesh first, and take that.

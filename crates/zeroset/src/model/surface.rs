@@ -146,8 +146,8 @@ fn of_fitted(fitted: &Arc<Fitted>, monitor: &dyn Monitor) -> Result<Surface, Mod
     let start = Instant::now();
     let keep = Keep::new(fitted);
     check(monitor)?;
-    let nodes: usize = fitted.lattice().known.par_iter().flatten().map(|word| word.count_ones() as usize).sum();
-    let watch = Watch::new(monitor, 0.0..AFTER[0], (POLYGONS_A_NODE * nodes as f64) as usize);
+    let nodes = fitted.lattice().known_nodes() as f64;
+    let watch = Watch::new(monitor, 0.0..AFTER[0], (POLYGONS_A_NODE * nodes) as usize);
     let (mut mesh, contour) =
         contour(fitted.lattice(), |p| watch.goes_on() && keep.as_ref().is_none_or(|keep| keep.contains(p)));
     drop(keep);

@@ -4,10 +4,9 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::columns::{Column, spans};
-use super::domain::Local;
+use super::domain::{Local, checked, is_finite};
 use super::keep::Keep;
 use super::{ModelError, Solid};
-use crate::contour::FieldContourError;
 use crate::monitor::{Monitor, Steps};
 use crate::vec3::{self, Vec3};
 
@@ -92,11 +91,9 @@ pub fn cut_and_fill(
     monitor: &dyn Monitor,
 ) -> Result<CutAndFill, ModelError> {
     let first = Local::new(before)?;
-    let second = Local::new(after)?;
+    let second = Local::at(after, first.origin)?;
     let region = Region::new(&first, &second, params, None)?;
-    // The second in the coordinates of the first.
-    let other = after.field(first.origin)?;
-    let (first, other) = (&*first.field, &*other);
+    let (first, other) = (&*first.field, &*second.field);
     let [cut, fill, net] = region.sum(monitor, |tile| {
         let found = [first, other].map(|field| spans(field, tile, region.step));
         move |line, ends| {
@@ -130,10 +127,10 @@ fn overlap(a: &Column, b: &Column, ends: [f64; 2]) -> f64 {
     a.inside(ends).map(with).sum()
 }
 
-/// Where lines are drawn, in the local coordinates of a solid.
+/// Where lines are drawn, in the local coordinates of both solids.
 struct Region<'a> {
     /// Ground that must be known where a line is.
-    grounds: Vec<(&'a Local, Vec3, Option<Keep>)>,
+    grounds: Vec<(&'a Local, Option<Keep>)>,
     low: Vec3,
     high: Vec3,
     /// Lines along x and y.
@@ -146,29 +143,18 @@ struct Region<'a> {
 }
 
 impl<'a> Region<'a> {
-    /// `alone` is the solid if it must end by itself.
+    /// Both are about the same origin. `alone` is the solid if it must end by itself.
     fn new(
         first: &'a Local,
         second: &'a Local,
         params: &VolumeParams,
         alone: Option<&Local>,
     ) -> Result<Self, ModelError> {
-        let shift = vec3::sub(second.origin, first.origin);
-        let own = |local: &Local, shift: Vec3| -> Result<[Vec3; 2], ModelError> {
-            let [low, high] = local.bounds(None)?;
-            let corner = |k: usize| std::array::from_fn(|a| if k >> a & 1 == 1 { high[a] } else { low[a] });
-            let corners = (0..8).map(|k| vec3::add(local.leave(corner(k)), shift));
-            Ok(crate::domain::bounds(corners).into())
-        };
-        if params.bounds.is_some_and(|[low, high]| !(0..3).all(|a| low[a] < high[a])) {
-            return Err(FieldContourError::EmptyBounds.into());
-        }
-        let given = params.bounds.map(|bounds| bounds.map(|corner| vec3::sub(corner, first.origin)));
-        let is_finite = |bounds: &[Vec3; 2]| bounds.iter().all(|corner| vec3::is_finite(*corner));
+        let given = checked(params.bounds)?.map(|bounds| bounds.map(|corner| vec3::sub(corner, first.origin)));
         let [low, high] = match given.filter(is_finite) {
             Some(given) => given,
             None => {
-                let (a, b) = (own(first, [0.0; 3])?, own(second, shift)?);
+                let (a, b) = (first.local_box()?, second.local_box()?);
                 let (mut low, mut high) = (vec3::min(a[0], b[0]), vec3::max(a[1], b[1]));
                 // Ground that one of them knows nothing of has not changed.
                 for (local, [own_low, own_high]) in [(first, a), (second, b)] {
@@ -209,13 +195,9 @@ impl<'a> Region<'a> {
         let lines = [0, 1].map(|a| ((high[a] - low[a]) / wanted).ceil().clamp(1.0, MOST_LINES) as usize);
         let spacing = [0, 1].map(|a| (high[a] - low[a]) / lines[a] as f64);
         // Of two equal ones the first is enough.
-        let both = if std::ptr::eq(first, second) {
-            vec![(first, [0.0; 3])]
-        } else {
-            vec![(first, [0.0; 3]), (second, shift)]
-        };
-        let grounds = both.into_iter().filter(|(local, _)| local.ground().is_some());
-        let grounds = grounds.map(|(local, shift)| (local, shift, local.keep())).collect();
+        let both = if std::ptr::eq(first, second) { vec![first] } else { vec![first, second] };
+        let grounds = both.into_iter().filter(|local| local.ground().is_some());
+        let grounds = grounds.map(|local| (local, local.keep())).collect();
         Ok(Self { grounds, low, high, lines, spacing, step: cell / STEPS, above })
     }
 
@@ -274,10 +256,9 @@ impl<'a> Region<'a> {
 
     /// Whether ground is known where a line is.
     fn is_known(&self, [x, y]: [f64; 2]) -> bool {
-        self.grounds.iter().all(|(local, shift, keep)| {
-            let p = local.enter(vec3::sub([x, y, 0.0], *shift));
-            keep.as_ref().is_none_or(|keep| keep.contains(p))
-        })
+        self.grounds
+            .iter()
+            .all(|(local, keep)| keep.as_ref().is_none_or(|keep| keep.contains(local.enter([x, y, 0.0]))))
     }
 
     /// The part of a line that counts.

@@ -160,7 +160,6 @@ impl Plan<'_> {
             world_from_local: cloud.world_from_local,
             scene: plan.scene,
             frame: frame.rows(),
-            field,
             metric: Metric::Near,
             bounds: bounds.into(),
             noise: plan.noise,
@@ -172,7 +171,7 @@ impl Plan<'_> {
             polygons: left.triangles().collect(),
             lines: left.lines,
         };
-        Ok((Fitted::new(parts)?, FittedReport { plan, fit, structure: found, polish, seconds }))
+        Ok((Fitted::new(field, parts)?, FittedReport { plan, fit, structure: found, polish, seconds }))
     }
 }
 

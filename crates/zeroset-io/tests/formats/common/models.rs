@@ -38,11 +38,11 @@ pub fn small_fitted() -> Fitted {
         known.push(masks[0]);
         inside.push(masks[1]);
     }
-    Fitted::kept(FittedParts {
+    let field = LatticeField::from_packed(lattice, keys, known, &inside, &values).unwrap();
+    let parts = FittedParts {
         world_from_local: [84_810.0, 447_412.0, 0.0],
         scene: Scene::Object,
         frame: [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]],
-        field: LatticeField::from_packed(lattice, keys, known, &inside, &values).unwrap(),
         metric: Metric::Near,
         bounds: [[2.5, 0.1, 1.5], [5.0, 2.5, 4.0]],
         noise: 0.01,
@@ -59,8 +59,8 @@ pub fn small_fitted() -> Fitted {
         }),
         lines: vec![vec![[[2.6, 0.5, 2.0], [3.0, 0.5, 2.0]], [[3.0, 0.5, 2.0], [3.0, 1.5, 2.0]]], vec![]],
         polygons: vec![[[2.0, 1.0, 4.0], [3.0, 1.0, 4.0], [3.0, 2.0, 4.0]]],
-    })
-    .unwrap()
+    };
+    Fitted::kept(field, parts).unwrap()
 }
 
 /// A solid of every kind, in one tree.

@@ -56,6 +56,7 @@ use crate::mesh::Mesh;
 use crate::spatial::PointTree;
 use crate::vec3::Vec3;
 use embed::Raster;
+use insert::{Inserted, insert_creases};
 pub(super) use of_field::meeting;
 pub(crate) use of_field::{REACH as FIELD_REACH, sharpen_field};
 use stars::{Fans, Stars};
@@ -120,16 +121,54 @@ pub(crate) fn sharpen(mesh: &mut Mesh, known: &Known) -> SharpReport {
     let on_planes = (0..mesh.vertices.len() as u32).filter(|&v| sheets.of(v).plane.is_some()).count();
     let first = mesh.vertices.len();
     let raster = Raster::new(mesh);
-    let mut inserted = insert::insert_creases(mesh, &sheets, insert::REACH * known.cell);
+    let inserted = insert_creases(mesh, &sheets, insert::REACH * known.cell);
     drop(sheets);
-    let on_creases = inserted.seats.iter().filter(|s| matches!(s, Seat::Along(..))).count();
-    let at_corners = inserted.seats.iter().filter(|s| matches!(s, Seat::At)).count();
-    inserted.origins.par_iter_mut().for_each(|origin| *origin = raster.nearest(*origin));
-    let fans = Fans::new(mesh);
-    settle::settle(mesh, &fans, &inserted, known.curved_creases);
-    let folded = tidy::tidy(mesh, fans, &mut inserted, known.cell);
-    let (taken_back, intersections) = embed::embed(mesh, first, &inserted.origins, raster, embed::MOVED * known.cell);
-    let (crease_length, crease_angle) = creases::measure(mesh, &inserted.seats);
-    super::clip::drop_unused(mesh);
-    SharpReport { on_planes, on_creases, at_corners, crease_length, crease_angle, folded, taken_back, intersections }
+    let finish =
+        Finish { first, cell: known.cell, settle: Some(known.curved_creases), moved: embed::MOVED * known.cell };
+    SharpReport { on_planes, ..finish.run(mesh, inserted, raster, |_, _| ()) }
+}
+
+/// What is done once creases are in.
+struct Finish {
+    /// Vertices before there were creases.
+    first: usize,
+    cell: f64,
+    /// Whether vertices on curved parts settle, and if so whether everywhere.
+    settle: Option<bool>,
+    /// Vertices that moved farther have their surroundings searched for triangles that cut through others.
+    moved: f64,
+}
+
+impl Finish {
+    /// Lets vertices settle, takes folds away, and takes vertices back where triangles cut through others. `refine` moves vertices before that.
+    fn run(
+        &self,
+        mesh: &mut Mesh,
+        mut inserted: Inserted,
+        raster: Raster,
+        refine: impl Fn(&mut Mesh, &[Seat]),
+    ) -> SharpReport {
+        let on_creases = inserted.seats.iter().filter(|s| matches!(s, Seat::Along(..))).count();
+        let at_corners = inserted.seats.iter().filter(|s| matches!(s, Seat::At)).count();
+        inserted.origins.par_iter_mut().for_each(|origin| *origin = raster.nearest(*origin));
+        let fans = Fans::new(mesh);
+        if let Some(everywhere) = self.settle {
+            settle::settle(mesh, &fans, &inserted, everywhere);
+        }
+        let folded = tidy::tidy(mesh, fans, &mut inserted, self.cell);
+        refine(mesh, &inserted.seats);
+        let (taken_back, intersections) = embed::embed(mesh, self.first, &inserted.origins, raster, self.moved);
+        let (crease_length, crease_angle) = creases::measure(mesh, &inserted.seats);
+        super::clip::drop_unused(mesh);
+        SharpReport {
+            on_planes: 0,
+            on_creases,
+            at_corners,
+            crease_length,
+            crease_angle,
+            folded,
+            taken_back,
+            intersections,
+        }
+    }
 }

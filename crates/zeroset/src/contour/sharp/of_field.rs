@@ -5,8 +5,8 @@ use rustc_hash::FxHashMap;
 
 use super::insert::{Inserted, insert_creases};
 use super::sheets::{Sheet, Sheets};
-use super::stars::{Fans, Stars};
-use super::{Known, Raster, Seat, SharpReport, creases, embed, settle, tidy};
+use super::stars::Stars;
+use super::{Finish, Known, Raster, Seat, SharpReport, embed};
 use crate::feature::Flat;
 use crate::field::Field;
 use crate::mesh::Mesh;
@@ -25,7 +25,7 @@ pub(crate) fn sharpen_field(mesh: &mut Mesh, field: &dyn Field, known: &[Option<
     let raster = Raster::new(mesh);
     let first = mesh.vertices.len();
     let numbers: Vec<u32> = mesh.vertices.par_iter().map(|&p| field.sheet(p)).collect();
-    let (sheets, feet, places) = sheets(mesh, field, &numbers, known, cell);
+    let OnSheets { sheets, feet, places } = OnSheets::new(mesh, field, &numbers, known, cell);
     let on_planes = (0..first as u32).filter(|&v| sheets.of(v).is_flat).count();
     let mut inserted = insert_creases(mesh, &sheets, REACH * cell);
     drop(sheets);
@@ -33,28 +33,19 @@ pub(crate) fn sharpen_field(mesh: &mut Mesh, field: &dyn Field, known: &[Option<
         *v = foot.unwrap_or(*v);
     }
     follow_lines(mesh, field, &places, &mut inserted, cell);
-    let on_creases = inserted.seats.iter().filter(|s| matches!(s, Seat::Along(..))).count();
-    let at_corners = inserted.seats.iter().filter(|s| matches!(s, Seat::At)).count();
-    inserted.origins.par_iter_mut().for_each(|origin| *origin = raster.nearest(*origin));
-    let fans = Fans::new(mesh);
     let is_fitted = known.iter().any(Option::is_some);
-    if is_fitted {
-        let everywhere = known.iter().flatten().any(|known| known.curved_creases);
-        settle::settle(mesh, &fans, &inserted, everywhere);
-    }
-    let folded = tidy::tidy(mesh, fans, &mut inserted, cell);
-    // Vertices on curved sheets have left them a little.
-    let seats = &inserted.seats;
-    mesh.vertices[..first].par_iter_mut().enumerate().for_each(|(v, p)| {
-        if let (Seat::Loose, Some(_)) = (seats[v], feet[v]) {
-            *p = meet(field, &[Place::OnField(numbers[v])], *p, cell).unwrap_or(*p);
-        }
-    });
+    let everywhere = known.iter().flatten().any(|known| known.curved_creases);
     let moved = if is_fitted { embed::MOVED * cell } else { 0.0 };
-    let (taken_back, intersections) = embed::embed(mesh, first, &inserted.origins, raster, moved);
-    let (crease_length, crease_angle) = creases::measure(mesh, &inserted.seats);
-    super::super::clip::drop_unused(mesh);
-    SharpReport { on_planes, on_creases, at_corners, crease_length, crease_angle, folded, taken_back, intersections }
+    let finish = Finish { first, cell, settle: is_fitted.then_some(everywhere), moved };
+    // Vertices on curved sheets have left them a little.
+    let refine = |mesh: &mut Mesh, seats: &[Seat]| {
+        mesh.vertices[..first].par_iter_mut().enumerate().for_each(|(v, p)| {
+            if let (Seat::Loose, Some(_)) = (seats[v], feet[v]) {
+                *p = meet(field, &[Place::OnField(numbers[v])], *p, cell).unwrap_or(*p);
+            }
+        });
+    };
+    SharpReport { on_planes, ..finish.run(mesh, inserted, raster, refine) }
 }
 
 /// What a vertex lies on.
@@ -66,67 +57,74 @@ enum Place {
     OnPlane(Option<u32>, Flat),
 }
 
-/// The sheet of each vertex; its foot on that, where it is one of the field's own; and what exactly it lies on.
-fn sheets(
-    mesh: &Mesh,
-    field: &dyn Field,
-    numbers: &[u32],
-    known: &[Option<Known>],
-    cell: f64,
-) -> (Sheets, Vec<Option<Vec3>>, Vec<Place>) {
-    // Operand 0 is all that points tell nothing of.
+/// What the vertices of a mesh lie on.
+struct OnSheets {
+    sheets: Sheets,
+    /// The foot of each vertex on its sheet, where that is one of the field's own and not of a fitted operand.
+    feet: Vec<Option<Vec3>>,
+    places: Vec<Place>,
+}
+
+impl OnSheets {
+    /// `numbers` are the field's sheets at the vertices.
+    fn new(mesh: &Mesh, field: &dyn Field, numbers: &[u32], known: &[Option<Known>], cell: f64) -> Self {
+        let operands = operands(field, numbers, known);
+        let stars = operands.iter().any(|&operand| operand != 0).then(|| Stars::new(mesh));
+        let beside = stars.as_ref().map(|stars| beside_others(&operands, stars));
+        // Where the mesh is blunt, beside another operand, it is away from the sheet.
+        let is_beside = |v: usize| beside.as_ref().is_some_and(|beside| beside[v]);
+        let foot = |v: usize| {
+            let p = mesh.vertices[v];
+            let is_own = operands[v] == 0 || is_beside(v);
+            is_own.then(|| meet(field, &[Place::OnField(numbers[v])], p, cell).unwrap_or(p))
+        };
+        let feet: Vec<Option<Vec3>> = (0..numbers.len()).into_par_iter().map(foot).collect();
+        let own = |v: usize| {
+            let (number, foot) = (numbers[v], feet[v].unwrap_or(mesh.vertices[v]));
+            let (_, gradient) = field.on_sheet(number, foot);
+            let flat = Flat::through(vec3::normalized(gradient).unwrap_or([0.0, 0.0, 1.0]), foot);
+            Sheet { plane: Some(number), is_flat: field.is_flat(number), flat }
+        };
+        let mut of: Vec<Sheet> = (0..numbers.len()).into_par_iter().map(own).collect();
+        if let Some(stars) = stars {
+            // Planes that points show are numbered after the field's sheets.
+            let mut next = field.sheets();
+            for (tag, known) in known.iter().enumerate() {
+                let Some(known) = known else { continue };
+                let shown = super::sheets::sheets(mesh, &stars, known);
+                let is_of_it = |v: &usize| operands[*v] == tag as u32 + 1;
+                of.par_iter_mut().enumerate().filter(|(v, _)| is_of_it(v)).for_each(|(v, sheet)| {
+                    let shown = shown.of(v as u32);
+                    *sheet = match shown.plane {
+                        Some(plane) => Sheet { plane: Some(next + plane), ..*shown },
+                        None if is_beside(v) => Sheet { plane: None, is_flat: false, flat: sheet.flat },
+                        None => *shown,
+                    };
+                });
+                next += known.facets.flats.len() as u32;
+            }
+        }
+        let place = |v: usize| match (feet[v], of[v].plane) {
+            (Some(_), None) => Place::OnField(numbers[v]),
+            (Some(_), Some(_)) if operands[v] == 0 => Place::OnField(numbers[v]),
+            (_, plane) => Place::OnPlane(plane, of[v].flat),
+        };
+        let places = (0..numbers.len()).into_par_iter().map(place).collect();
+        let feet = feet.iter().zip(&operands).map(|(foot, &operand)| foot.filter(|_| operand == 0)).collect();
+        let curved_creases = known.iter().map(|known| known.as_ref().is_some_and(|known| known.curved_creases));
+        let curved_creases = std::iter::once(true).chain(curved_creases).collect();
+        Self { sheets: Sheets::given(of, operands, curved_creases), feet, places }
+    }
+}
+
+/// The operand of each vertex: 0 for all that points tell nothing of, else 1 more than its tag.
+fn operands(field: &dyn Field, numbers: &[u32], known: &[Option<Known>]) -> Vec<u32> {
     let tag = |number: u32| field.operand(number).tag.filter(|&tag| known.get(tag).is_some_and(Option::is_some));
     let mut operand_of: FxHashMap<u32, u32> = FxHashMap::default();
     for &number in numbers {
         operand_of.entry(number).or_insert_with(|| tag(number).map_or(0, |tag| tag as u32 + 1));
     }
-    let operands: Vec<u32> = numbers.par_iter().map(|number| operand_of[number]).collect();
-    let own = |v: usize| meet(field, &[Place::OnField(numbers[v])], mesh.vertices[v], cell).unwrap_or(mesh.vertices[v]);
-    let stars = operands.iter().any(|&operand| operand != 0).then(|| Stars::new(mesh));
-    let beside = stars.as_ref().map_or_else(Vec::new, |stars| beside_others(&operands, stars));
-    // Where the mesh is blunt it is away from the sheet.
-    let is_own = |v: usize| operands[v] == 0 || beside[v];
-    let mut feet: Vec<Option<Vec3>> = (0..numbers.len()).into_par_iter().map(|v| is_own(v).then(|| own(v))).collect();
-    let tangent = |number: u32, foot: Vec3| {
-        let (_, gradient) = field.on_sheet(number, foot);
-        Flat::through(vec3::normalized(gradient).unwrap_or([0.0, 0.0, 1.0]), foot)
-    };
-    let mut of: Vec<Sheet> = numbers
-        .par_iter()
-        .zip(&feet)
-        .zip(&mesh.vertices)
-        .map(|((&number, foot), &p)| {
-            let flat = tangent(number, foot.unwrap_or(p));
-            Sheet { plane: Some(number), is_flat: field.is_flat(number), flat }
-        })
-        .collect();
-    let mut next = field.sheets();
-    if let Some(stars) = stars {
-        for (tag, known) in known.iter().enumerate() {
-            let (Some(known), operand) = (known, tag as u32 + 1) else { continue };
-            let shown = super::sheets::sheets(mesh, &stars, known);
-            of.par_iter_mut().enumerate().filter(|(v, _)| operands[*v] == operand).for_each(|(v, sheet)| {
-                let shown = shown.of(v as u32);
-                *sheet = match shown.plane {
-                    Some(plane) => Sheet { plane: Some(next + plane), ..*shown },
-                    None if beside[v] => Sheet { plane: None, is_flat: false, flat: sheet.flat },
-                    None => *shown,
-                };
-            });
-            next += known.facets.flats.len() as u32;
-        }
-    }
-    let place = |v: usize| match (feet[v], of[v].plane) {
-        (Some(_), None) => Place::OnField(numbers[v]),
-        (Some(_), Some(_)) if operands[v] == 0 => Place::OnField(numbers[v]),
-        (_, plane) => Place::OnPlane(plane, of[v].flat),
-    };
-    let places = (0..numbers.len()).into_par_iter().map(place).collect();
-    if operands.iter().any(|&operand| operand != 0) {
-        feet.par_iter_mut().enumerate().filter(|(v, _)| operands[*v] != 0).for_each(|(_, foot)| *foot = None);
-    }
-    let curved_creases = known.iter().map(|known| known.as_ref().is_some_and(|known| known.curved_creases));
-    (Sheets::given(of, operands, std::iter::once(true).chain(curved_creases).collect()), feet, places)
+    numbers.par_iter().map(|number| operand_of[number]).collect()
 }
 
 /// Rings of vertices around another operand in which the mesh is blunt.

@@ -25,6 +25,16 @@ impl SmoothUnion {
         Ok(Self { operands: [a, b], radius })
     }
 
+    /// The operand that a sheet belongs to, and its number there; `None` for the fillet.
+    fn of_sheet(&self, sheet: u32) -> Option<(&dyn Field, u32)> {
+        let first = self.operands[0].sheets();
+        match sheet {
+            0 => None,
+            s if s <= first => Some((&*self.operands[0], s - 1)),
+            s => Some((&*self.operands[1], s - 1 - first)),
+        }
+    }
+
     fn blend(&self, a: f64, b: f64) -> f64 {
         let h = (1.0 - (a - b).abs() / self.radius).max(0.0);
         a.min(b) - 0.25 * self.radius * h * h
@@ -92,29 +102,17 @@ impl Field for SmoothUnion {
     }
 
     fn on_sheet(&self, sheet: u32, p: [f64; 3]) -> (f64, [f64; 3]) {
-        let first = self.operands[0].sheets();
-        match sheet {
-            0 => (self.value(p), self.gradient(p)),
-            s if s <= first => self.operands[0].on_sheet(s - 1, p),
-            s => self.operands[1].on_sheet(s - 1 - first, p),
+        match self.of_sheet(sheet) {
+            Some((field, sheet)) => field.on_sheet(sheet, p),
+            None => (self.value(p), self.gradient(p)),
         }
     }
 
     fn is_flat(&self, sheet: u32) -> bool {
-        let first = self.operands[0].sheets();
-        match sheet {
-            0 => false,
-            s if s <= first => self.operands[0].is_flat(s - 1),
-            s => self.operands[1].is_flat(s - 1 - first),
-        }
+        self.of_sheet(sheet).is_some_and(|(field, sheet)| field.is_flat(sheet))
     }
 
     fn operand(&self, sheet: u32) -> Operand {
-        let first = self.operands[0].sheets();
-        match sheet {
-            0 => Operand::default(),
-            s if s <= first => self.operands[0].operand(s - 1),
-            s => self.operands[1].operand(s - 1 - first),
-        }
+        self.of_sheet(sheet).map_or_else(Operand::default, |(field, sheet)| field.operand(sheet))
     }
 }

@@ -23,17 +23,14 @@ impl LatticeField {
     /// steps along the axes.
     pub(crate) fn fill(&mut self) {
         let far = self.greatest();
-        let signs = |is_wanted: fn(f32) -> bool| -> Vec<Mask> {
-            let of_block = |(values, known): (&[f32], &Mask)| {
-                std::array::from_fn(|z| {
-                    let rows = values[64 * z..64 * (z + 1)].iter().enumerate();
-                    let bits = rows.map(|(i, &value)| u64::from(is_wanted(value)) << i).fold(0, |bits, bit| bits | bit);
-                    bits & known[z]
-                })
-            };
-            self.values.par_chunks_exact(BLOCK_NODES).zip(&self.known).map(of_block).collect()
-        };
-        let (mut inside, mut outside) = (signs(|value| value < 0.0), signs(|value| value >= 0.0));
+        let mut inside = self.inside();
+        let mut outside = self.known.clone();
+        inside.par_iter_mut().zip(&mut outside).for_each(|(inside, outside)| {
+            for z in 0..8 {
+                inside[z] &= outside[z];
+                outside[z] &= !inside[z];
+            }
+        });
         let missing = |inside: &[Mask], outside: &[Mask]| -> usize {
             let open = |(i, o): (&Mask, &Mask)| (0..8).map(|z| (i[z] | o[z]).count_zeros() as usize).sum::<usize>();
             inside.par_iter().zip(outside).map(open).sum()

@@ -6,7 +6,7 @@ mod solid;
 
 use rayon::prelude::*;
 
-use crate::domain::{BLOCK_NODES, Blocks, Lattice, Mask, block_of_key, mask_get, mask_set};
+use crate::domain::{BLOCK_NODES, Blocks, Lattice, Mask, block_of_key, mask_count, mask_get};
 pub use solid::LatticeSolid;
 
 /// A fitted function, known in a band around the surface.
@@ -49,7 +49,7 @@ impl LatticeField {
         if keys.iter().any(|&key| key >> 63 != 0 || (0..3).any(|a| block_of_key(key)[a] >= extent[a])) {
             return Err("a block lies outside of its lattice");
         }
-        let counts: Vec<usize> = known.iter().map(|mask| mask.iter().map(|w| w.count_ones() as usize).sum()).collect();
+        let counts: Vec<usize> = known.iter().map(mask_count).collect();
         if counts.iter().sum::<usize>() != packed.len() {
             return Err("it has not one value for each node that is known");
         }
@@ -84,25 +84,29 @@ impl LatticeField {
     /// What of a field is kept, beside its lattice, keys and known nodes: the other nodes that are inside, and the values that are known.
     #[must_use]
     pub fn packed(&self) -> (Vec<Mask>, Vec<f32>) {
-        let mut inside = vec![[0; 8]; self.known.len()];
-        let mut packed = Vec::new();
-        for (b, (known, inside)) in self.known.iter().zip(&mut inside).enumerate() {
-            for local in 0..BLOCK_NODES {
-                let value = self.values[b * BLOCK_NODES + local];
-                if mask_get(known, local) {
-                    packed.push(value);
-                } else if value < 0.0 {
-                    mask_set(inside, local);
-                }
-            }
+        let mut inside = self.inside();
+        let mut packed = Vec::with_capacity(self.known_nodes());
+        for ((values, known), inside) in self.values.chunks_exact(BLOCK_NODES).zip(&self.known).zip(&mut inside) {
+            (0..8).for_each(|z| inside[z] &= !known[z]);
+            packed
+                .extend(values.iter().enumerate().filter(|(local, _)| mask_get(known, *local)).map(|(_, value)| value));
         }
         (inside, packed)
     }
 
-    /// One without nodes.
-    pub(crate) fn none() -> Self {
-        let lattice = Lattice::new([0.0; 3], 1.0, 0, [1; 3]).expect("this lattice is possible");
-        Self { lattice, blocks: Blocks::default(), known: Vec::new(), values: Vec::new() }
+    /// Number of nodes whose value is known.
+    #[must_use]
+    pub fn known_nodes(&self) -> usize {
+        self.known.par_iter().map(mask_count).sum()
+    }
+
+    /// The nodes of each block whose value is negative, known or not.
+    pub(crate) fn inside(&self) -> Vec<Mask> {
+        let of_block = |values: &[f32]| {
+            let row = |z: usize| values[64 * z..64 * (z + 1)].iter().enumerate();
+            std::array::from_fn(|z| row(z).fold(0, |bits, (i, &value)| bits | u64::from(value < 0.0) << i))
+        };
+        self.values.par_chunks_exact(BLOCK_NODES).map(of_block).collect()
     }
 
     /// The value at a node of the finest level; `None` outside the band.
