@@ -80,6 +80,40 @@ pub trait Basis<const D: usize>: Sync {
 
     /// The functions at a place. `terms` is emptied first.
     fn evaluate(&self, place: &Place<D>, derivatives: Derivatives, terms: &mut Terms<D>);
+
+    /// Where F of given coefficients lies on a simplex.
+    fn span(&self, simplex: usize, coefficients: &[f64]) -> Span;
+}
+
+/// Where F lies on a part of the domain. Sound but for rounding.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Span {
+    /// F is not less than this.
+    pub low: f64,
+    /// F is not greater than this.
+    pub high: f64,
+    /// The gradient of F is not longer than this.
+    pub slope: f64,
+}
+
+impl Span {
+    /// That of no part.
+    pub const EMPTY: Self = Self { low: f64::INFINITY, high: f64::NEG_INFINITY, slope: 0.0 };
+
+    /// That of two parts.
+    #[must_use]
+    pub fn hull(self, other: Self) -> Self {
+        Self { low: self.low.min(other.low), high: self.high.max(other.high), slope: self.slope.max(other.slope) }
+    }
+
+    fn with_value(self, value: f64) -> Self {
+        Self { low: self.low.min(value), high: self.high.max(value), ..self }
+    }
+}
+
+/// The length of a vector.
+fn length<const D: usize>(v: [f64; D]) -> f64 {
+    v.iter().map(|c| c * c).sum::<f64>().sqrt()
 }
 
 /// A function with a smaller value in the middle of a simplex counts as zero there.

@@ -13,7 +13,7 @@
 //!
 //! Kernels alone neither sum to 1 nor reproduce polynomials; a [`Tail`] of polynomials beside them does.
 
-use super::{Basis, Derivatives, Terms};
+use super::{Basis, Derivatives, Span, Terms, length};
 use crate::domain::{Place, SimplicialMesh, bounds};
 
 /// A function of the distance to a centre. Widths are lengths.
@@ -106,6 +106,46 @@ impl Kernel {
             }
         };
         [value, first * per_length.powi(2), second * per_length.powi(4)]
+    }
+}
+
+impl Kernel {
+    /// What its second derivatives, along any direction, do not exceed between two distances; infinite if there is no such bound.
+    ///
+    /// They are f1 across and f1 + f2 r^2 along the direction to the centre: see [`Self::jet`].
+    fn bend(self, [low, high]: [f64; 2]) -> f64 {
+        let s = low / self.width();
+        let u = s * s;
+        let bend = match self {
+            // The second derivative along is greatest again at u = 3/2.
+            Self::Gaussian { .. } if u < 1.5 => (2.0 * (-u).exp()).max(4.0 * (-1.5_f64).exp()),
+            Self::Gaussian { .. } => (4.0 * u - 2.0) * (-u).exp(),
+            Self::Multiquadric { .. } => 1.0 / (1.0 + u).sqrt(),
+            Self::InverseMultiquadric { .. } => 2.0 / (1.0 + u).powf(1.5),
+            Self::ThinPlate { width } => {
+                let of = |u: f64| (u.ln() + 1.0).abs().max((u.ln() + 3.0).abs());
+                of(u).max(of((high / width).powi(2)))
+            }
+            Self::WendlandC2 { .. } | Self::WendlandC4 { .. } if s >= 1.0 => 0.0,
+            // And here at s = 1/2 and 3/7.
+            Self::WendlandC2 { .. } if s < 0.5 => (20.0 * (1.0 - s).powi(3)).max(5.0),
+            Self::WendlandC2 { .. } => 20.0 * (1.0 - s).powi(2) * (4.0 * s - 1.0),
+            Self::WendlandC4 { .. } => {
+                let along = |s: f64| 56.0 / 3.0 * (1.0 - s).powi(4) * (35.0 * s * s - 4.0 * s - 1.0);
+                let across = 56.0 / 3.0 * (1.0 - s).powi(5) * (5.0 * s + 1.0);
+                across.max(along(s.max(3.0 / 7.0)))
+            }
+        };
+        bend / self.width().powi(2)
+    }
+
+    /// What the length of its gradient does not exceed between two distances, where it has no bound on second derivatives.
+    fn steepest(self, [low, high]: [f64; 2]) -> f64 {
+        let at = |s: f64| if s > 0.0 { (s * (2.0 * s.ln() + 1.0)).abs() } else { 0.0 };
+        let [low, high] = [low / self.width(), high / self.width()];
+        // Near the centre it is steepest at exp(-3/2).
+        let inner = (-1.5_f64).exp().clamp(low, high);
+        at(low).max(at(high)).max(at(inner)) / self.width()
     }
 }
 
@@ -257,6 +297,37 @@ impl<const D: usize> Basis<D> for Radial<D> {
                 push(first + 1 + a, (place.position[a] - self.middle[a]) / self.half_side, gradient, flat);
             }
         }
+    }
+
+    /// From the value and the gradient in the middle of the simplex, and bounds on second derivatives over the ball around it.
+    fn span(&self, simplex: usize, coefficients: &[f64]) -> Span {
+        let corners = self.domain.simplex(simplex).iter().map(|&v| self.domain.vertices()[v as usize]);
+        let weight = 1.0 / (D + 1) as f64;
+        let barycentric = std::array::from_fn(|c| if c <= D { weight } else { 0.0 });
+        let middle = self.domain.position(simplex, &barycentric);
+        let distance = |p: [f64; D]| length::<D>(std::array::from_fn(|a| p[a] - middle[a]));
+        let radius = corners.map(distance).fold(0.0, f64::max);
+        let mut terms = Terms::new();
+        self.evaluate(&Place { simplex, barycentric, position: middle }, Derivatives::First, &mut terms);
+        let (mut value, mut gradient, mut slope) = (0.0, [0.0; D], 0.0);
+        let reach = |j: usize| {
+            let away = distance(self.centres[j]);
+            [(away - radius).max(0.0), away + radius]
+        };
+        for (k, &j) in terms.indices.iter().enumerate() {
+            let (j, c) = (j as usize, coefficients[j as usize]);
+            value += c * terms.values[k];
+            if j < self.centres.len() && self.kernel.bend(reach(j)).is_infinite() {
+                slope += c.abs() * self.kernel.steepest(reach(j));
+            } else {
+                (0..D).for_each(|a| gradient[a] += c * terms.gradients[k][a]);
+            }
+        }
+        // Compact functions that vanish in the middle may not elsewhere.
+        let bends = (0..self.centres.len()).map(|j| (coefficients[j].abs(), self.kernel.bend(reach(j))));
+        let bends = bends.filter(|(_, bend)| bend.is_finite()).map(|(c, bend)| c * bend);
+        slope += length(gradient) + radius * bends.sum::<f64>();
+        Span { low: value - radius * slope, high: value + radius * slope, slope }
     }
 }
 

@@ -4,7 +4,7 @@
 //! corners and 4 l_i l_j in the middle of the edges. Both are continuous across faces, sum to 1, and reproduce polynomials of
 //! their degree.
 
-use super::{Basis, Derivatives, Terms};
+use super::{Basis, Derivatives, Expansion, Span, Terms, length};
 use crate::domain::{Place, SimplicialMesh};
 
 /// Linear on each simplex (Lagrange, degree 1): one function for each vertex.
@@ -52,6 +52,13 @@ impl<const D: usize> Basis<D> for P1<D> {
         if derivatives >= Derivatives::Second {
             terms.hessians.resize(D + 1, [[0.0; D]; D]);
         }
+    }
+
+    /// The values at the corners, between which F lies.
+    fn span(&self, simplex: usize, coefficients: &[f64]) -> Span {
+        let values = self.domain.simplex(simplex).iter().map(|&v| coefficients[v as usize]);
+        let span = values.fold(Span::EMPTY, Span::with_value);
+        Span { slope: slope_at_corners(self, simplex, coefficients), ..span }
     }
 }
 
@@ -130,4 +137,28 @@ impl<const D: usize> Basis<D> for P2<D> {
             }
         }
     }
+
+    /// The coefficients in Bernstein's form, between which F lies: the values at the corners, and for each edge twice the value in its middle less the mean of
+    /// its ends. The gradient is linear, and so longest at a corner.
+    fn span(&self, simplex: usize, coefficients: &[f64]) -> Span {
+        let corner = |i: usize| coefficients[self.domain.simplex(simplex)[i] as usize];
+        let first_edge = self.domain.vertices().len();
+        let pairs = (0..=D).flat_map(|i| (i + 1..=D).map(move |j| (i, j)));
+        let edges = pairs
+            .zip(self.domain.edges_of(simplex))
+            .map(|((i, j), &edge)| 2.0 * coefficients[first_edge + edge as usize] - 0.5 * (corner(i) + corner(j)));
+        let span = (0..=D).map(corner).chain(edges).fold(Span::EMPTY, Span::with_value);
+        Span { slope: slope_at_corners(self, simplex, coefficients), ..span }
+    }
+}
+
+/// The length of the longest of the gradients at the corners of a simplex.
+fn slope_at_corners<const D: usize>(basis: &dyn Basis<D>, simplex: usize, coefficients: &[f64]) -> f64 {
+    let f = Expansion::new(basis, coefficients);
+    let at = |corner: usize| {
+        let barycentric = std::array::from_fn(|c| if c == corner { 1.0 } else { 0.0 });
+        let position = basis.domain().vertices()[basis.domain().simplex(simplex)[corner] as usize];
+        length(f.gradient_at(&Place { simplex, barycentric, position }))
+    };
+    (0..=D).map(at).fold(0.0, f64::max)
 }

@@ -2,7 +2,7 @@
 //!
 //! # What
 //! A [`Field`] has a value, a gradient and bounds everywhere. F < 0 inside, F > 0 outside, and the gradient points outward. Fields are
-//! fitted models, primitives ([`HalfSpace`], [`Cuboid`], [`Ball`], [`Frustum`] for cylinders and cones, [`Prism`], [`HeightField`],
+//! fitted models ([`LatticeSolid`], and [`ExpansionField`] for small fits), primitives ([`HalfSpace`], [`Cuboid`], [`Ball`], [`Frustum`] for cylinders and cones, [`Prism`], [`HeightField`],
 //! [`MeshSolid`]), and what is made of others: [`Union`], [`Intersection`], [`Difference`], [`Complement`], [`SmoothUnion`], [`Offset`],
 //! [`Shell`], [`Placed`] and [`Tagged`].
 //!
@@ -37,6 +37,7 @@
 //! constant: D. Kalra and A. Barr, Guaranteed ray intersections with implicit surfaces, 1989.
 
 mod combine;
+mod expansion;
 mod interval;
 mod lattice;
 mod primitive;
@@ -45,6 +46,7 @@ mod primitive;
 mod tests;
 
 pub use combine::{Complement, Difference, Intersection, Offset, Placed, Placement, Shell, SmoothUnion, Tagged, Union};
+pub use expansion::ExpansionField;
 pub use interval::Interval;
 pub use lattice::{LatticeField, LatticeSolid};
 pub use primitive::{Ball, Cuboid, Frustum, HalfSpace, HeightField, MeshSolid, Prism};

@@ -6,7 +6,12 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
 use super::*;
+use crate::basis::{Basis, Kernel, P1, P2, Radial, Tail, farthest_points};
+use crate::contour::{FieldContourParams, contour_field};
+use crate::domain::SimplicialMesh;
 use crate::fit::cascade::{self, FitParams};
+use crate::fit::normalized::{Data, NormalizedFit, Order2, SquaredGradient};
+use crate::mesh::topology;
 use crate::sample::{Scene, SceneKind};
 use crate::vec3;
 
@@ -54,6 +59,45 @@ fn fitted(kind: SceneKind) -> Any {
     Arc::clone(FITTED[usize::from(is_object)].get_or_init(fit)) as Any
 }
 
+/// Small fits to a ball, linear, quadratic and radial; fitted once.
+fn small_fits() -> Vec<Any> {
+    static FITTED: OnceLock<Vec<Arc<ExpansionField>>> = OnceLock::new();
+    let fit = || {
+        let points: Vec<[f64; 3]> =
+            Scene::new(SceneKind::Sphere, 1).points(600, 0.0, 1).points.iter().map(|&p| vec3::scale(p, 1.4)).collect();
+        let mut data = Data::new();
+        data.points(&points, 1.0).unwrap();
+        let lattice = |n: u32| SimplicialMesh::<3>::lattice([-1.0, -1.1, -1.0], [1.0; 3], [n; 3]).unwrap();
+        let centres = || farthest_points(&points, 40).into_iter().map(|i| points[i]).collect::<Vec<_>>();
+        let radial = |kernel, tail| -> Arc<dyn Basis<3> + Send> {
+            let centres = centres().into_iter().chain([[0.0; 3]]).collect();
+            Arc::new(Radial::new(lattice(8), kernel, centres, tail).unwrap())
+        };
+        let bases: Vec<Arc<dyn Basis<3> + Send>> = vec![
+            Arc::new(P1::new(lattice(6))),
+            Arc::new(P2::new(lattice(3))),
+            radial(Kernel::Gaussian { width: 0.6 }, Tail::Constant),
+            radial(Kernel::Multiquadric { width: 0.4 }, Tail::Linear),
+            radial(Kernel::InverseMultiquadric { width: 0.4 }, Tail::Constant),
+            radial(Kernel::ThinPlate { width: 1.0 }, Tail::Linear),
+            radial(Kernel::WendlandC2 { width: 1.2 }, Tail::Constant),
+            radial(Kernel::WendlandC4 { width: 1.2 }, Tail::Constant),
+        ];
+        let one = |basis: Arc<dyn Basis<3> + Send>| {
+            let (smoothness, normalization) = (Order2 { weight: 1e-4 }, SquaredGradient::default());
+            let fit = NormalizedFit::new(&*basis, &data).smoothness(&smoothness).normalization(&normalization);
+            let fit = fit.run().unwrap();
+            // Gradients of about 1, as the tests compare them with differences.
+            let f = fit.function(&*basis);
+            let steepness: f64 = points.iter().map(|&p| vec3::norm(f.gradient(p).unwrap())).sum::<f64>() / 600.0;
+            let coefficients = fit.coefficients.iter().map(|c| c / steepness).collect();
+            Arc::new(ExpansionField::new(Arc::clone(&basis), coefficients).unwrap())
+        };
+        bases.into_iter().map(one).collect()
+    };
+    FITTED.get_or_init(fit).iter().map(|field| Arc::clone(field) as Any).collect()
+}
+
 fn primitives() -> Vec<Any> {
     vec![
         fitted(SceneKind::Torus),
@@ -99,7 +143,8 @@ fn tree(rng: &mut Pcg64Mcg, depth: usize) -> Any {
 fn every_field() -> Vec<Any> {
     let mut rng = Pcg64Mcg::seed_from_u64(5);
     let trees: Vec<Any> = (0..24).map(|i| tree(&mut rng, 1 + i % 3)).collect();
-    primitives().into_iter().chain(primitives().into_iter().map(placed)).chain(trees).collect()
+    let one_each = || primitives().into_iter().chain(small_fits());
+    one_each().chain(one_each().map(placed)).chain(trees).collect()
 }
 
 #[test]
@@ -321,4 +366,33 @@ fn bad_shapes_are_refused() {
     let mut open = Scene::new(SceneKind::Box, 3).truth;
     open.triangles.pop();
     assert!(message(MeshSolid::new(&open).map(drop)).contains("not closed"));
+}
+
+#[test]
+fn small_fits_of_a_ball_are_balls() {
+    let ball = Ball::new([0.0; 3], 0.7).unwrap();
+    for (k, field) in small_fits().iter().enumerate() {
+        assert!(field.extent().is_some(), "{k}");
+        let (mesh, _) = contour_field(&**field, &FieldContourParams { cell: 0.06, bounds: None }, &()).unwrap();
+        let topology = topology(&mesh).unwrap();
+        assert!(topology.closed && topology.components.len() == 1 && topology.genus == Some(0), "{k}: {topology:?}");
+        let off = mesh.vertices.iter().map(|&v| ball.value(v).abs()).fold(0.0, f64::max);
+        // Linear functions on six cells across can do no better.
+        let most = if k == 0 { 0.045 } else { 0.02 };
+        assert!(off < most, "{k}: {off}");
+    }
+    let turned = Placed::new(small_fits().remove(2), Placement::default().moved([2.0, 0.0, 0.0]).unwrap());
+    let both = Union::new(vec![Arc::new(turned), small_fits().remove(1)]).unwrap();
+    assert!(both.value([2.0, 0.0, 0.0]) < 0.0 && both.value([0.0; 3]) < 0.0 && both.value([1.0, 0.0, 0.0]) > 0.0);
+}
+
+#[test]
+fn expansions_that_are_not_known_everywhere_are_refused() {
+    let tetrahedron = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let domain = SimplicialMesh::from_tetrahedra(tetrahedron, &[[0, 1, 2, 3]]).unwrap();
+    assert!(ExpansionField::new(Arc::new(P1::new(domain)), vec![1.0; 4]).is_err());
+    let basis = || Arc::new(P1::new(SimplicialMesh::<3>::lattice([0.0; 3], [1.0; 3], [1; 3]).unwrap()));
+    assert!(ExpansionField::new(basis(), vec![1.0; 7]).is_err());
+    assert!(ExpansionField::new(basis(), vec![f64::NAN; 8]).is_err());
+    assert!(ExpansionField::new(basis(), vec![1.0; 8]).is_ok());
 }
