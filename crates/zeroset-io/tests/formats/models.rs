@@ -489,7 +489,8 @@ fn the_example_of_the_format_evaluates_models() {
             std::array::from_fn(|a| parts.world_from_local[a] + p[a] + 12.0 * cell * (rng.random::<f64>() - 0.5))
         };
         let mut positions: Vec<[f64; 3]> = (0..1998).map(|_| near(&mut rng)).collect();
-        positions.extend([[0.0; 3], [1e6; 3]]);
+        // Far beyond the lattice, where F is as on the nearest face.
+        positions.extend([[-1e6; 3], [1e6; 3]]);
         let path = folder.path().join("a.zset");
         let solid = Solid::Fitted(Arc::new(fitted));
         write_model(&path, &model(solid.clone())).unwrap();
@@ -497,7 +498,7 @@ fn the_example_of_the_format_evaluates_models() {
         let expected = solid.field([0.0; 3]).unwrap().values(&positions);
         assert_eq!(found.len(), expected.len());
         let is_stored: Vec<bool> = found.iter().map(|value| !value.is_nan()).collect();
-        assert!(is_stored.iter().filter(|&&is| is).count() > 1500 && !is_stored[1998] && !is_stored[1999]);
+        assert!(is_stored.iter().filter(|&&is| is).count() > 1500);
         for ((found, expected), _) in found.iter().zip(&expected).zip(is_stored).filter(|(_, is)| *is) {
             assert!((found - expected).abs() < 1e-6 * cell, "{kind:?}: {found} {expected}");
         }
