@@ -9,7 +9,7 @@ use zeroset_io::{MeshFormat, WriteOptions, read_mesh, shown, write_mesh};
 use crate::args::SimplifyArgs;
 use crate::console::Console;
 use crate::error::CliError;
-use crate::input::{check_outputs, refuse_mesh_stream};
+use crate::input::{check_output_and_report, refuse_mesh_stream};
 use crate::progress::Progress;
 use crate::report::{OutputReport, SCHEMA_VERSION, write_json};
 use crate::table::{count, position, significant};
@@ -49,9 +49,7 @@ fn check(args: &SimplifyArgs) -> Result<(), CliError> {
     MeshFormat::from_path(&args.input)?;
     refuse_mesh_stream(&args.output)?;
     MeshFormat::from_path(&args.output)?;
-    let report = args.report.as_deref().map(|path| (path, "the report"));
-    let outputs: Vec<_> = [(args.output.as_path(), "the output")].into_iter().chain(report).collect();
-    check_outputs(std::slice::from_ref(&args.input), &outputs)
+    check_output_and_report(std::slice::from_ref(&args.input), Some(&args.output), args.report.as_deref())
 }
 
 fn write(args: &SimplifyArgs, mesh: &Mesh) -> Result<OutputReport, CliError> {

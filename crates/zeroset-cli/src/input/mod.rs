@@ -4,7 +4,9 @@ mod names;
 mod scene;
 mod select;
 
-pub(crate) use names::{check_inputs, check_outputs, is_stream, refuse_mesh_stream, refuse_same};
+pub(crate) use names::{
+    check_inputs, check_output_and_report, check_outputs, is_stream, refuse_mesh_stream, refuse_same,
+};
 pub(crate) use scene::{SURVEYED, announced, scene, up};
 
 use std::time::Instant;

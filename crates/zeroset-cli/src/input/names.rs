@@ -44,6 +44,17 @@ pub(crate) fn check_outputs(inputs: &[PathBuf], outputs: &[(&Path, &'static str)
     Ok(())
 }
 
+/// The same for one output and a report, as far as they are asked for.
+pub(crate) fn check_output_and_report(
+    inputs: &[PathBuf],
+    output: Option<&Path>,
+    report: Option<&Path>,
+) -> Result<(), CliError> {
+    let outputs = [(output, "the output"), (report, "the report")];
+    let outputs: Vec<_> = outputs.into_iter().filter_map(|(path, role)| Some((path?, role))).collect();
+    check_outputs(inputs, &outputs)
+}
+
 /// Refuses two outputs of one name.
 pub(crate) fn refuse_same(first: (&Path, &'static str), second: (&Path, &'static str)) -> Result<(), CliError> {
     if is_same(first.0, second.0) { Err(same(second.0, first.1, second.1)) } else { Ok(()) }

@@ -8,7 +8,7 @@ use super::open::{Opener, files, provenance};
 use super::{console, start, write_report};
 use crate::args::EditArgs;
 use crate::error::CliError;
-use crate::input::check_outputs;
+use crate::input::check_output_and_report;
 use crate::table::bytes;
 
 /// What is done with an operand.
@@ -23,9 +23,7 @@ pub(crate) fn run(args: &EditArgs) -> Result<(), CliError> {
     let steps = steps(&args.operations)?;
     let named = || std::iter::once(args.base.as_str()).chain(steps.iter().map(|(_, operand)| *operand));
     if is_model(&args.output) {
-        let report = args.run.report.as_deref().map(|path| (path, "the report"));
-        let outputs: Vec<_> = [(args.output.as_path(), "the output")].into_iter().chain(report).collect();
-        check_outputs(&files(named()), &outputs)?;
+        check_output_and_report(&files(named()), Some(&args.output), args.run.report.as_deref())?;
     } else {
         check_mesh(&args.output, &args.run, named())?;
     }

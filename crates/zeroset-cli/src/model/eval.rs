@@ -10,17 +10,15 @@ use super::open::{files, open};
 use super::{Written, console, start, work, write_report};
 use crate::args::EvalArgs;
 use crate::error::CliError;
-use crate::input::{check_outputs, is_stream};
+use crate::input::{check_output_and_report, is_stream};
 use crate::table::{count, significant};
 
 pub(crate) fn run(args: &EvalArgs) -> Result<(), CliError> {
     PositionFormat::from_path(&args.points)?;
     TableFormat::from_path(&args.output)?;
-    let report = args.run.report.as_deref().map(|path| (path, "the report"));
-    let outputs: Vec<_> = [(args.output.as_path(), "the output")].into_iter().chain(report).collect();
     let mut inputs = files([args.model.as_str()]);
     inputs.extend((!is_stream(&args.points)).then(|| args.points.clone()));
-    check_outputs(&inputs, &outputs)?;
+    check_output_and_report(&inputs, Some(&args.output), args.run.report.as_deref())?;
     start(&args.run)?;
     let opened = open(&args.model)?;
     let points = read_positions(&args.points)?;

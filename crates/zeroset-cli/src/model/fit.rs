@@ -12,7 +12,7 @@ use super::open::provenance;
 use crate::args::{FitArgs, SceneChoice};
 use crate::console::{Console, Lines};
 use crate::error::{CliError, in_words};
-use crate::input::{Input, Origin, SURVEYED, check_inputs, check_outputs};
+use crate::input::{Input, Origin, SURVEYED, check_inputs, check_output_and_report};
 use crate::progress::Progress;
 use crate::reconstruct::{announce, known, params};
 use crate::report::{SCHEMA_VERSION, write_json};
@@ -99,10 +99,8 @@ fn check(args: &FitArgs) -> Result<Vec<zeroset_io::CloudFormat>, CliError> {
         .into());
     }
     let formats = check_inputs(&args.input.inputs)?;
-    let report = args.run.report.as_deref().map(|path| (path, "the report"));
-    let outputs: Vec<_> = [(args.output.as_path(), "the output")].into_iter().chain(report).collect();
     let read = [&args.input.inputs[..], &args.fit.constraints[..]].concat();
-    check_outputs(&read, &outputs)?;
+    check_output_and_report(&read, Some(&args.output), args.run.report.as_deref())?;
     known::check(&args.fit.constraints)?;
     Ok(formats)
 }

@@ -11,7 +11,7 @@ use super::open::{Opened, files, open};
 use super::{console, start, work, write_report};
 use crate::args::{Bounds, BriefRunArgs, MeshArgs, SurfaceArgs};
 use crate::error::CliError;
-use crate::input::{check_outputs, refuse_mesh_stream};
+use crate::input::{check_output_and_report, refuse_mesh_stream};
 use crate::reconstruct::attributes;
 use crate::report::OutputReport;
 use crate::simplify::outcome;
@@ -31,9 +31,7 @@ pub(super) fn check<'a>(
 ) -> Result<(), CliError> {
     refuse_mesh_stream(output)?;
     MeshFormat::from_path(output)?;
-    let report = run.report.as_deref().map(|path| (path, "the report"));
-    let outputs: Vec<_> = [(output, "the output")].into_iter().chain(report).collect();
-    check_outputs(&files(named), &outputs)
+    check_output_and_report(&files(named), Some(output), run.report.as_deref())
 }
 
 /// Makes a mesh and writes it. `what` names the solid in messages.

@@ -9,14 +9,12 @@ use super::open::{files, open};
 use super::{Written, console, start, work, write_report};
 use crate::args::{Bounds, SliceArgs};
 use crate::error::CliError;
-use crate::input::check_outputs;
+use crate::input::check_output_and_report;
 use crate::table::count;
 
 pub(crate) fn run(args: &SliceArgs) -> Result<(), CliError> {
     SectionFormat::from_path(&args.output)?;
-    let report = args.run.report.as_deref().map(|path| (path, "the report"));
-    let outputs: Vec<_> = [(args.output.as_path(), "the output")].into_iter().chain(report).collect();
-    check_outputs(&files([args.model.as_str()]), &outputs)?;
+    check_output_and_report(&files([args.model.as_str()]), Some(&args.output), args.run.report.as_deref())?;
     start(&args.run)?;
     let opened = open(&args.model)?;
     let cuts = match args.every {

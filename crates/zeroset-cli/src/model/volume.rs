@@ -8,12 +8,11 @@ use super::{start, work, write_report};
 use crate::args::{Bounds, Plane, VolumeArgs};
 use crate::console::Console;
 use crate::error::CliError;
-use crate::input::{check_outputs, is_stream};
+use crate::input::{check_output_and_report, is_stream};
 use crate::table::{columns, significant};
 
 pub(crate) fn run(args: &VolumeArgs) -> Result<(), CliError> {
-    let report = args.run.report.as_deref().map(|path| (path, "the report"));
-    check_outputs(&[], &report.into_iter().collect::<Vec<_>>())?;
+    check_output_and_report(&[], None, args.run.report.as_deref())?;
     start(&args.run)?;
     let before = open(&args.model)?;
     let params = VolumeParams {

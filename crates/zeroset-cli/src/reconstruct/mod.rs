@@ -17,7 +17,7 @@ use zeroset_io::{CloudFormat, MeshFormat, WriteOptions, shown, write_mesh};
 use crate::args::{AttributesChoice, FitOptions, OrAuto, OrOff, QualityChoice, ReconstructArgs, RunArgs, SceneChoice};
 use crate::console::{Console, Lines};
 use crate::error::{CliError, in_words};
-use crate::input::{Input, SURVEYED, announced, check_inputs, check_outputs, refuse_mesh_stream, scene, up};
+use crate::input::{Input, SURVEYED, announced, check_inputs, check_output_and_report, refuse_mesh_stream, scene, up};
 use crate::progress::Progress;
 use crate::report::{OutputReport, Report, Seconds};
 use crate::{interrupt, memory, threads};
@@ -127,10 +127,8 @@ fn check(args: &ReconstructArgs) -> Result<Vec<CloudFormat>, CliError> {
         MeshFormat::from_path(output)?;
     }
     let formats = check_inputs(&args.input.inputs)?;
-    let outputs = [(args.output.as_deref(), "the output"), (args.run.report.as_deref(), "the report")];
-    let outputs: Vec<_> = outputs.into_iter().filter_map(|(path, role)| Some((path?, role))).collect();
     let read = [&args.input.inputs[..], &args.fit.constraints[..]].concat();
-    check_outputs(&read, &outputs)?;
+    check_output_and_report(&read, args.output.as_deref(), args.run.report.as_deref())?;
     known::check(&args.fit.constraints)?;
     Ok(formats)
 }
