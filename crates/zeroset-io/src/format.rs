@@ -110,7 +110,12 @@ impl MeshFormat {
     }
 }
 
-pub(crate) fn by_suffix<F: Copy>(path: &Path, kind: &'static str, known: &[(&'static str, F)]) -> Result<F, IoError> {
+/// What the suffix of `path` stands for among `known`, in upper or lower case. `kind` is for the message: "cloud", "mesh"
+/// and so on.
+///
+/// # Errors
+/// [`IoError::UnknownSuffix`], which lists the known ones.
+pub fn by_suffix<F: Copy>(path: &Path, kind: &'static str, known: &[(&'static str, F)]) -> Result<F, IoError> {
     let suffix = path.extension().map(|s| s.to_string_lossy().to_ascii_lowercase());
     let found = suffix.as_deref().and_then(|suffix| known.iter().find(|(name, _)| *name == suffix));
     found.map(|(_, format)| *format).ok_or_else(|| IoError::UnknownSuffix {

@@ -64,9 +64,9 @@ pub use constraints::{
 };
 pub use error::{IoError, shown};
 pub use features::{FeatureFile, FeatureFormat, FeatureOutput, read_features, read_features_bytes, write_features};
-pub use format::{CloudFormat, MeshFormat};
+pub use format::{CloudFormat, MeshFormat, by_suffix};
 pub use mesh::{WriteOptions, WriteReport, read_mesh, read_mesh_bytes, write_mesh};
-pub use model::{is_model, read_model, read_model_bytes, write_model};
+pub use model::{check_model_suffix, is_model, read_model, read_model_bytes, write_model};
 pub use output::{abandon_writes, check_writable, write_atomically};
 pub use planar::{PlanarData, PlanarFormat, PlanarResult, planar_json, read_planar, read_planar_bytes};
 pub use raster::{Raster, RasterFormat, write_raster};

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use zeroset_io::{IoError, PlanarFormat, check_writable};
+use zeroset_io::{IoError, PlanarFormat, by_suffix, check_writable};
 
 use crate::args::{BasisChoice, DomainChoice, Fit2dArgs};
 use crate::error::CliError;
@@ -60,12 +60,7 @@ fn output(path: &Path) -> Result<Output, CliError> {
     if is_stream(path) {
         return Ok(Output::Stream);
     }
-    let suffix = path.extension().map(|s| s.to_string_lossy().to_ascii_lowercase());
-    let found = KNOWN.iter().find(|(known, _)| suffix.as_deref() == Some(known));
-    found.map(|(_, output)| *output).ok_or_else(|| {
-        let known = KNOWN.map(|(known, _)| known).join(", ");
-        IoError::UnknownSuffix { path: path.to_path_buf(), kind: "picture or figures", suffix, known }.into()
-    })
+    Ok(by_suffix(path, "picture or figures", &KNOWN)?)
 }
 
 pub(super) fn is_stream(path: &Path) -> bool {

@@ -9,6 +9,7 @@ use std::path::Path;
 use serde::Serialize;
 use zeroset::cloud::{Cloud, Spacing};
 use zeroset::mesh::{Mesh, Topology, topology};
+use zeroset_io::solid::MODEL_SUFFIX;
 use zeroset_io::{CloudFormat, IoError, LinearUnit, MeshFormat, ReadReport, is_model, read_cloud, read_mesh, shown};
 
 use self::model::ModelInfo;
@@ -134,7 +135,7 @@ fn mesh_format(path: &Path) -> Result<Option<MeshFormat>, CliError> {
 fn unknown(error: IoError) -> IoError {
     let mut known: Vec<&str> = CloudFormat::KNOWN.iter().map(|(suffix, _)| *suffix).collect();
     let meshes = MeshFormat::KNOWN.iter().map(|(suffix, _)| *suffix);
-    for suffix in meshes.chain(["zset"]) {
+    for suffix in meshes.chain([MODEL_SUFFIX]) {
         if !known.contains(&suffix) {
             known.push(suffix);
         }

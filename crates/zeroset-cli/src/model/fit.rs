@@ -6,7 +6,7 @@ use std::time::Instant;
 use serde::Serialize;
 use zeroset::model::{Model, Solid};
 use zeroset::reconstruct::{FittedReport, PlanReport, ReconstructError, plan};
-use zeroset_io::{IoError, is_model, shown, write_model};
+use zeroset_io::{check_model_suffix, shown, write_model};
 
 use super::open::provenance;
 use crate::args::{FitArgs, SceneChoice};
@@ -89,15 +89,7 @@ struct Content<'a> {
 
 /// What can be told to be wrong before anything is read.
 fn check(args: &FitArgs) -> Result<Vec<zeroset_io::CloudFormat>, CliError> {
-    if !is_model(&args.output) {
-        return Err(IoError::UnknownSuffix {
-            path: args.output.clone(),
-            kind: "model",
-            suffix: args.output.extension().map(|suffix| suffix.to_string_lossy().to_ascii_lowercase()),
-            known: "zset".to_owned(),
-        }
-        .into());
-    }
+    check_model_suffix(&args.output)?;
     let formats = check_inputs(&args.input.inputs)?;
     let read = [&args.input.inputs[..], &args.fit.constraints[..]].concat();
     check_output_and_report(&read, Some(&args.output), args.run.report.as_deref())?;

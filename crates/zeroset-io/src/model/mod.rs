@@ -15,15 +15,25 @@ use std::path::Path;
 use zeroset::model::{Model, Provenance};
 
 use crate::IoError;
+use crate::format::by_suffix;
 use crate::input::read_file;
 use crate::output::write_file;
+use crate::solid::MODEL_SUFFIX;
 use container::{Reader, Writer};
 use header::{Header, Provenance as ProvenanceHeader};
 
 /// Whether a name is that of a model: its suffix is `zset`, in upper or lower case.
 #[must_use]
 pub fn is_model(path: &Path) -> bool {
-    path.extension().is_some_and(|suffix| suffix.eq_ignore_ascii_case("zset"))
+    path.extension().is_some_and(|suffix| suffix.eq_ignore_ascii_case(MODEL_SUFFIX))
+}
+
+/// Refuses a name that is not that of a model.
+///
+/// # Errors
+/// [`IoError::UnknownSuffix`], which tells the suffix of models.
+pub fn check_model_suffix(path: &Path) -> Result<(), IoError> {
+    by_suffix(path, "model", &[(MODEL_SUFFIX, ())])
 }
 
 /// Whether no coordinate is infinite, NaN, or beyond all grids.
@@ -60,14 +70,7 @@ pub fn read_model_bytes(path: &Path, bytes: &[u8]) -> Result<Model, IoError> {
 /// If the name does not end in `.zset`, the file cannot be written, the solid is more than 200 operands deep, or a number in it is not finite
 /// or beyond [`MAX_COORDINATE`](crate::MAX_COORDINATE).
 pub fn write_model(path: &Path, model: &Model) -> Result<u64, IoError> {
-    if !is_model(path) {
-        return Err(IoError::UnknownSuffix {
-            path: path.to_path_buf(),
-            kind: "model",
-            suffix: path.extension().map(|s| s.to_string_lossy().to_ascii_lowercase()),
-            known: "zset".to_owned(),
-        });
-    }
+    check_model_suffix(path)?;
     let mut arrays = Writer::default();
     let refused =
         |what: String| IoError::malformed(path, what, "it could not be read again, so change the solid first");
