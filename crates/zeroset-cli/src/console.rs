@@ -26,6 +26,11 @@ impl Console {
         }
     }
 
+    /// What was decided and done, unless the user asked for quiet.
+    pub(crate) fn unless(quiet: bool) -> Self {
+        if quiet { Self::Quiet } else { Self::Normal }
+    }
+
     /// A line for a user who did not ask for quiet.
     pub(crate) fn say(self, line: &str) {
         if self >= Self::Normal {

@@ -16,9 +16,9 @@ use crate::table::{count, position, significant};
 use crate::{interrupt, threads};
 
 pub(crate) fn run(args: &SimplifyArgs) -> Result<(), CliError> {
-    let console = if args.quiet { Console::Quiet } else { Console::Normal };
+    let console = Console::unless(args.run.quiet);
     check(args)?;
-    threads::start(args.threads)?;
+    threads::start(args.run.threads)?;
     let mesh = interrupt::watched(|| read_mesh(&args.input))??;
     // One of the two is always given.
     let target = args.target.params().unwrap_or_default();
@@ -29,7 +29,7 @@ pub(crate) fn run(args: &SimplifyArgs) -> Result<(), CliError> {
     let (simplified, report) = result.map_err(|error| named(error, &args.input))?;
     let output = write(args, &simplified)?;
     console.say(&summary(&report, &output));
-    let Some(path) = &args.report else { return Ok(()) };
+    let Some(path) = &args.run.report else { return Ok(()) };
     let (zeroset_version, input) = (env!("CARGO_PKG_VERSION"), shown(&args.input));
     write_json(path, &Report { schema_version: SCHEMA_VERSION, zeroset_version, input, simplify: report, output })
 }
@@ -49,7 +49,7 @@ fn check(args: &SimplifyArgs) -> Result<(), CliError> {
     MeshFormat::from_path(&args.input)?;
     refuse_mesh_stream(&args.output)?;
     MeshFormat::from_path(&args.output)?;
-    check_output_and_report(std::slice::from_ref(&args.input), Some(&args.output), args.report.as_deref())
+    check_output_and_report(std::slice::from_ref(&args.input), Some(&args.output), args.run.report.as_deref())
 }
 
 fn write(args: &SimplifyArgs, mesh: &Mesh) -> Result<OutputReport, CliError> {

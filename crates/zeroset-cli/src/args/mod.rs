@@ -18,8 +18,8 @@ use zeroset::sample::SceneKind;
 pub use compare::CompareArgs;
 pub use features::{FeaturesArgs, PostureChoice};
 pub use fit2d::{BasisChoice, BranchesChoice, DomainChoice, Fit2dArgs, NormalizationChoice, SolverChoice};
-pub use model::{BriefRunArgs, EditArgs, EvalArgs, FitArgs, MeshArgs, RasterArgs, SliceArgs, SurfaceArgs, VolumeArgs};
-pub use shared::{InputArgs, RunArgs, SceneArgs, SceneChoice, SimplifyTarget, UpChoice};
+pub use model::{EditArgs, EvalArgs, FitArgs, MeshArgs, RasterArgs, SliceArgs, SurfaceArgs, VolumeArgs};
+pub use shared::{BriefRunArgs, InputArgs, RunArgs, SceneArgs, SceneChoice, SimplifyTarget, UpChoice};
 pub use simplify::SimplifyArgs;
 pub use values::{Bounds, Classes, OrAuto, OrOff, Plane, Rectangle};
 

@@ -1,10 +1,9 @@
 //! Arguments of the commands about models.
 
-use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use super::values::{self, Bounds, Plane};
-use super::{AttributesChoice, FitOptions, InputArgs, RunArgs, SimplifyTarget};
+use super::{AttributesChoice, BriefRunArgs, FitOptions, InputArgs, RunArgs, SimplifyTarget};
 
 const SOLID: &str = "\
 A model is a .zset file, a tree of operands in a .toml file, a closed mesh, or an expression such as
@@ -55,20 +54,6 @@ const RASTER_EXAMPLES: &str = "\
 Examples:
   zeroset raster tile.zset -o dsm.tif
   zeroset raster ground.zset -o dtm.tif --cell 1";
-
-/// How to run where there is nothing to limit.
-#[derive(Debug, Clone, clap::Args)]
-pub struct BriefRunArgs {
-    /// Threads to use [default: all]; the result does not depend on it.
-    #[arg(long, value_name = "N", value_parser = values::threads, help_heading = "Running")]
-    pub threads: Option<NonZeroUsize>,
-    /// Write a report of all figures as JSON; `-` is standard output.
-    #[arg(long, value_name = "FILE", help_heading = "Running")]
-    pub report: Option<PathBuf>,
-    /// Print nothing but errors.
-    #[arg(short, long, help_heading = "Running")]
-    pub quiet: bool,
-}
 
 /// How meshes are made of models.
 #[derive(Debug, Clone, clap::Args)]

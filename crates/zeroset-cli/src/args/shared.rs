@@ -115,3 +115,17 @@ pub struct RunArgs {
     #[arg(short, long, help_heading = "Running")]
     pub verbose: bool,
 }
+
+/// How to run where there is nothing to limit.
+#[derive(Debug, Clone, clap::Args)]
+pub struct BriefRunArgs {
+    /// Threads to use [default: all]; the result does not depend on it.
+    #[arg(long, value_name = "N", value_parser = values::threads, help_heading = "Running")]
+    pub threads: Option<NonZeroUsize>,
+    /// Write a report of all figures as JSON; `-` is standard output.
+    #[arg(long, value_name = "FILE", help_heading = "Running")]
+    pub report: Option<PathBuf>,
+    /// Print nothing but errors.
+    #[arg(short, long, help_heading = "Running")]
+    pub quiet: bool,
+}

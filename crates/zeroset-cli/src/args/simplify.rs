@@ -1,12 +1,11 @@
 //! Arguments of `zeroset simplify`.
 
-use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use clap::ArgGroup;
 
-use super::SimplifyTarget;
 use super::values;
+use super::{BriefRunArgs, SimplifyTarget};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -37,13 +36,7 @@ pub struct SimplifyArgs {
     /// Angle from which an edge is a crease, in degrees.
     #[arg(long, value_name = "DEGREES", value_parser = values::sharp_angle, default_value = "30", help_heading = "Simplification")]
     pub sharp_angle: f64,
-    /// Threads to use [default: all]; the result does not depend on it.
-    #[arg(long, value_name = "N", value_parser = values::threads, help_heading = "Running")]
-    pub threads: Option<NonZeroUsize>,
-    /// Write a report of all figures as JSON; `-` is standard output.
-    #[arg(long, value_name = "FILE", help_heading = "Running")]
-    pub report: Option<PathBuf>,
-    /// Print nothing but errors.
-    #[arg(short, long, help_heading = "Running")]
-    pub quiet: bool,
+    /// How to run.
+    #[command(flatten)]
+    pub run: BriefRunArgs,
 }

@@ -68,7 +68,7 @@ struct Done<'a> {
 
 pub(crate) fn run(args: &Fit2dArgs) -> Result<(), CliError> {
     let output = check::check(args)?;
-    let console = if args.quiet { Console::Quiet } else { Console::Normal };
+    let console = Console::unless(args.quiet);
     let input = read_planar(&args.input)?;
     let progress = Progress::new(console);
     progress.stage("fitting");

@@ -25,7 +25,7 @@ use crate::{interrupt, threads};
 
 /// How much to say.
 fn console(run: &BriefRunArgs) -> Console {
-    if run.quiet { Console::Quiet } else { Console::Normal }
+    Console::unless(run.quiet)
 }
 
 /// Does something that may take long, on the threads that were asked for. `what` names the model in messages.
