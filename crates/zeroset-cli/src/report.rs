@@ -1,6 +1,6 @@
-//! The JSON report of a reconstruction.
+//! JSON reports: how all are written, and that of a reconstruction.
 //!
-//! Its names do not change within a `schema_version`; new ones may come. Lengths are in the unit of the input,
+//! Their names do not change within a `schema_version`; new ones may come. Lengths are in the unit of the input,
 //! positions in its reference system.
 
 use std::io::Write;
@@ -20,8 +20,24 @@ use crate::error::CliError;
 use crate::input::{Input, Origin, is_stream};
 use crate::memory;
 
-/// Version of the report's shape.
-pub(crate) const SCHEMA_VERSION: u32 = 1;
+/// Version of the shape of reports.
+const SCHEMA_VERSION: u32 = 1;
+
+/// A report with the version of its shape.
+#[derive(Debug, Serialize)]
+struct Versioned<T> {
+    schema_version: u32,
+    zeroset_version: &'static str,
+    #[serde(flatten)]
+    content: T,
+}
+
+/// Writes a report, if one was asked for.
+pub(crate) fn write_report(path: Option<&Path>, content: impl Serialize) -> Result<(), CliError> {
+    let Some(path) = path else { return Ok(()) };
+    let zeroset_version = env!("CARGO_PKG_VERSION");
+    write_text(path, &to_json(&Versioned { schema_version: SCHEMA_VERSION, zeroset_version, content }))
+}
 
 /// Wall seconds of each stage.
 #[derive(Debug, Clone, Copy, Default, Serialize)]
@@ -106,8 +122,6 @@ struct Counts {
 /// The whole report.
 #[derive(Debug, Serialize)]
 pub(crate) struct Report<'a> {
-    schema_version: u32,
-    zeroset_version: &'static str,
     #[serde(flatten)]
     origin: Origin<'a>,
     plan: &'a PlanReport,
@@ -143,8 +157,6 @@ impl<'a> Report<'a> {
         seconds: Seconds,
     ) -> Self {
         Self {
-            schema_version: SCHEMA_VERSION,
-            zeroset_version: env!("CARGO_PKG_VERSION"),
             origin: Origin::of(input),
             plan,
             fit: None,
@@ -208,15 +220,14 @@ impl<'a> Report<'a> {
 
     /// Writes the report where it was asked for, if it was.
     pub(crate) fn write(&self) -> Result<(), CliError> {
-        self.path.as_ref().map_or(Ok(()), |path| write_json(path, self))
+        write_report(self.path.as_deref(), self)
     }
 }
 
-/// Writes JSON to a file, or to standard output for `-`.
-pub(crate) fn write_json(path: &Path, value: &impl Serialize) -> Result<(), CliError> {
-    let text = to_json(value);
+/// Writes text to a file, or to standard output for `-`.
+pub(crate) fn write_text(path: &Path, text: &str) -> Result<(), CliError> {
     if is_stream(path) {
-        return Console::print(&text);
+        return Console::print(text);
     }
     let fill = |out: &mut std::io::BufWriter<std::fs::File>| {
         out.write_all(text.as_bytes()).map_err(|source| IoError::from_system(path, source))

@@ -11,7 +11,7 @@ use crate::console::Console;
 use crate::error::CliError;
 use crate::input::{check_output_and_report, refuse_mesh_stream};
 use crate::progress::Progress;
-use crate::report::{OutputReport, SCHEMA_VERSION, write_json};
+use crate::report::{OutputReport, write_report};
 use crate::table::{count, position, significant};
 use crate::{interrupt, threads};
 
@@ -29,16 +29,12 @@ pub(crate) fn run(args: &SimplifyArgs) -> Result<(), CliError> {
     let (simplified, report) = result.map_err(|error| named(error, &args.input))?;
     let output = write(args, &simplified)?;
     console.say(&summary(&report, &output));
-    let Some(path) = &args.run.report else { return Ok(()) };
-    let (zeroset_version, input) = (env!("CARGO_PKG_VERSION"), shown(&args.input));
-    write_json(path, &Report { schema_version: SCHEMA_VERSION, zeroset_version, input, simplify: report, output })
+    write_report(args.run.report.as_deref(), Report { input: shown(&args.input), simplify: report, output })
 }
 
 /// The whole report.
 #[derive(Debug, Serialize)]
 struct Report {
-    schema_version: u32,
-    zeroset_version: &'static str,
     input: String,
     simplify: SimplifyReport,
     output: OutputReport,

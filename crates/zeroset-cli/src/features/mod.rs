@@ -16,7 +16,7 @@ use crate::console::{Console, Lines};
 use crate::error::{CliError, in_words};
 use crate::input::{Input, SURVEYED, announced, check_inputs, check_outputs, is_stream, scene, up};
 use crate::progress::Progress;
-use crate::report::write_json;
+use crate::report::write_report;
 use crate::table::name;
 use crate::{interrupt, memory, threads};
 use report::{OutputReport, Report, Seconds};
@@ -66,7 +66,7 @@ pub(crate) fn run(args: &FeaturesArgs) -> Result<(), CliError> {
         Console::complain(text::tables(&features, &done, &seconds, &input).trim_end());
     }
     let report = Report::new(&input, &features, &done, args, &params, outputs, seconds);
-    args.run.report.as_ref().map_or(Ok(()), |path| write_json(path, &report))
+    write_report(args.run.report.as_deref(), report)
 }
 
 /// What can be told to be wrong before anything is read. Returns the formats of the inputs.

@@ -10,9 +10,6 @@ use crate::input::{Input, Origin, up};
 use crate::memory;
 use crate::table::name;
 
-/// Version of the report's shape.
-const SCHEMA_VERSION: u32 = 1;
-
 /// Wall seconds of each stage.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub(super) struct Seconds {
@@ -70,8 +67,6 @@ struct Counts {
 /// The whole report.
 #[derive(Debug, Serialize)]
 pub(super) struct Report<'a> {
-    schema_version: u32,
-    zeroset_version: &'static str,
     #[serde(flatten)]
     origin: Origin<'a>,
     up: String,
@@ -95,8 +90,6 @@ impl<'a> Report<'a> {
         seconds: Seconds,
     ) -> Self {
         Self {
-            schema_version: SCHEMA_VERSION,
-            zeroset_version: env!("CARGO_PKG_VERSION"),
             origin: Origin::of(input),
             up: name(up(&args.scene)),
             counts: Counts {

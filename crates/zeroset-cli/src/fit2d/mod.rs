@@ -6,8 +6,6 @@ mod picture;
 mod plan;
 mod report;
 
-use std::io::Write;
-
 use zeroset::basis::RadialError;
 use zeroset::contour::{Branches, Polyline, zero_lines};
 use zeroset::domain::{DomainError, Place};
@@ -17,13 +15,14 @@ use zeroset::fit::normalized::{
     Order2, Smoothness, Solver, SquaredGradient,
 };
 use zeroset::monitor::Monitor;
-use zeroset_io::{IoError, PlanarData, planar_json, read_planar, shown, write_atomically};
+use zeroset_io::{PlanarData, planar_json, read_planar, shown};
 
 use crate::args::{BranchesChoice, Fit2dArgs, NormalizationChoice, SolverChoice};
 use crate::console::Console;
 use crate::error::CliError;
 use crate::interrupt;
 use crate::progress::Progress;
+use crate::report::write_text;
 use check::Output;
 use plan::Plan;
 
@@ -175,13 +174,7 @@ fn write(args: &Fit2dArgs, output: Output, done: &Done<'_>) -> Result<(), CliErr
         Output::Stream | Output::Json => planar_json(&report::result(args, done)),
         Output::Svg => picture::draw(args, done),
     };
-    if output == Output::Stream {
-        return Console::print(&text);
-    }
-    write_atomically::<IoError>(&args.output, |out| {
-        out.write_all(text.as_bytes()).map_err(|source| IoError::from_system(&args.output, source))
-    })?;
-    Ok(())
+    write_text(&args.output, &text)
 }
 
 fn shown_output(args: &Fit2dArgs) -> String {

@@ -5,10 +5,11 @@ use zeroset_io::{is_model, shown, write_model};
 
 use super::mesh::{check as check_mesh, make};
 use super::open::{Opener, files, provenance};
-use super::{console, start, write_report};
+use super::{console, start};
 use crate::args::EditArgs;
 use crate::error::CliError;
 use crate::input::check_output_and_report;
+use crate::report::write_report;
 use crate::table::bytes;
 
 /// What is done with an operand.
@@ -47,7 +48,7 @@ pub(crate) fn run(args: &EditArgs) -> Result<(), CliError> {
         "inputs": model.provenance.inputs,
         "output": { "path": shown(&args.output), "bytes": written },
     });
-    write_report(&args.run, report)
+    write_report(args.run.report.as_deref(), report)
 }
 
 /// The operations, each with its operand.

@@ -7,10 +7,11 @@ use zeroset::model::evaluate;
 use zeroset_io::{EvaluatedPoints, PositionFormat, TableFormat, read_positions, write_evaluated};
 
 use super::open::{files, open};
-use super::{Written, console, start, work, write_report};
+use super::{Written, console, start, work};
 use crate::args::EvalArgs;
 use crate::error::CliError;
 use crate::input::{check_output_and_report, is_stream};
+use crate::report::write_report;
 use crate::table::{count, significant};
 
 pub(crate) fn run(args: &EvalArgs) -> Result<(), CliError> {
@@ -54,7 +55,7 @@ pub(crate) fn run(args: &EvalArgs) -> Result<(), CliError> {
         seconds,
         output: Written::new(&args.output, &written),
     };
-    write_report(&args.run, content)
+    write_report(args.run.report.as_deref(), content)
 }
 
 #[derive(Debug, Serialize)]

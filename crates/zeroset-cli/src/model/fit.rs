@@ -15,7 +15,7 @@ use crate::error::{CliError, in_words};
 use crate::input::{Input, Origin, SURVEYED, check_inputs, check_output_and_report};
 use crate::progress::Progress;
 use crate::reconstruct::{announce, known, params};
-use crate::report::{SCHEMA_VERSION, write_json};
+use crate::report::write_report;
 use crate::table::{bytes, count, length, name, significant};
 use crate::{interrupt, threads};
 
@@ -62,23 +62,12 @@ pub(crate) fn run(args: &FitArgs) -> Result<(), CliError> {
         length(report.plan.resolution, unit),
         significant(start.elapsed().as_secs_f64(), 3),
     ));
-    let Some(path) = &args.run.report else { return Ok(()) };
-    write_json(
-        path,
-        &Content {
-            schema_version: SCHEMA_VERSION,
-            zeroset_version: env!("CARGO_PKG_VERSION"),
-            origin: Origin::of(&input),
-            fitted: report,
-            bytes: written,
-        },
-    )
+    let content = Content { origin: Origin::of(&input), fitted: report, bytes: written };
+    write_report(args.run.report.as_deref(), content)
 }
 
 #[derive(Debug, Serialize)]
 struct Content<'a> {
-    schema_version: u32,
-    zeroset_version: &'static str,
     #[serde(flatten)]
     origin: Origin<'a>,
     #[serde(flatten)]

@@ -8,12 +8,12 @@ use zeroset::model::{MeshParams, MeshReport, Solid, mesh};
 use zeroset_io::{MeshFormat, WriteOptions, write_mesh};
 
 use super::open::{Opened, files, open};
-use super::{console, start, work, write_report};
+use super::{console, start, work};
 use crate::args::{Bounds, BriefRunArgs, MeshArgs, SurfaceArgs};
 use crate::error::CliError;
 use crate::input::{check_output_and_report, refuse_mesh_stream};
 use crate::reconstruct::attributes;
-use crate::report::OutputReport;
+use crate::report::{OutputReport, write_report};
 use crate::simplify::outcome;
 use crate::table::{count, position, significant};
 
@@ -48,7 +48,7 @@ pub(super) fn make(
     let options = WriteOptions { resolution: Some(report.cell), ..WriteOptions::default() };
     let output = OutputReport::new(output, write_mesh(output, &mesh, &options)?)?;
     console(run).say(&summary(&report, &output, begin.elapsed().as_secs_f64()));
-    write_report(run, Content { inputs: opened.inputs, mesh: report, output })
+    write_report(run.report.as_deref(), Content { inputs: opened.inputs, mesh: report, output })
 }
 
 #[derive(Debug, Serialize)]

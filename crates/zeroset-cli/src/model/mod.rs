@@ -20,7 +20,6 @@ use crate::args::BriefRunArgs;
 use crate::console::Console;
 use crate::error::CliError;
 use crate::progress::Progress;
-use crate::report::{SCHEMA_VERSION, write_json};
 use crate::{interrupt, threads};
 
 /// How much to say.
@@ -43,21 +42,6 @@ fn work<T>(
 /// Starts the threads that were asked for.
 fn start(run: &BriefRunArgs) -> Result<(), CliError> {
     threads::start(run.threads)
-}
-
-/// A report with the version of its shape.
-#[derive(Debug, Serialize)]
-struct Report<T> {
-    schema_version: u32,
-    zeroset_version: &'static str,
-    #[serde(flatten)]
-    content: T,
-}
-
-/// Writes the report, if one was asked for.
-fn write_report(run: &BriefRunArgs, content: impl Serialize) -> Result<(), CliError> {
-    let Some(path) = &run.report else { return Ok(()) };
-    write_json(path, &Report { schema_version: SCHEMA_VERSION, zeroset_version: env!("CARGO_PKG_VERSION"), content })
 }
 
 /// A file that was written, for reports.

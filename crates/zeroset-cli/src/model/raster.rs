@@ -5,10 +5,11 @@ use zeroset::model::heights;
 use zeroset_io::{Raster, RasterFormat, shown, write_raster};
 
 use super::open::{files, open};
-use super::{Written, console, start, work, write_report};
+use super::{Written, console, start, work};
 use crate::args::{Bounds, RasterArgs};
 use crate::error::CliError;
 use crate::input::check_output_and_report;
+use crate::report::write_report;
 use crate::table::{count, significant};
 
 pub(crate) fn run(args: &RasterArgs) -> Result<(), CliError> {
@@ -32,7 +33,7 @@ pub(crate) fn run(args: &RasterArgs) -> Result<(), CliError> {
     ));
     let content =
         Content { size: raster.size, cell: raster.cell, with_height, output: Written::new(&args.output, &written) };
-    write_report(&args.run, content)
+    write_report(args.run.report.as_deref(), content)
 }
 
 #[derive(Debug, Serialize)]

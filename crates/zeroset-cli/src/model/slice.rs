@@ -6,10 +6,11 @@ use zeroset::model::{Cuts, MeshParams, Slices, slices};
 use zeroset_io::{Section, SectionFormat, SectionLevel, SectionLine, SectionPlane, WriteOptions, shown, write_section};
 
 use super::open::{files, open};
-use super::{Written, console, start, work, write_report};
+use super::{Written, console, start, work};
 use crate::args::{Bounds, SliceArgs};
 use crate::error::CliError;
 use crate::input::check_output_and_report;
+use crate::report::write_report;
 use crate::table::count;
 
 pub(crate) fn run(args: &SliceArgs) -> Result<(), CliError> {
@@ -39,7 +40,7 @@ pub(crate) fn run(args: &SliceArgs) -> Result<(), CliError> {
     ));
     let content =
         Content { planes: section.levels.len(), curves: all, closed, output: Written::new(&args.output, &written) };
-    write_report(&args.run, content)
+    write_report(args.run.report.as_deref(), content)
 }
 
 #[derive(Debug, Serialize)]

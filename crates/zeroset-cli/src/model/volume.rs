@@ -4,11 +4,12 @@ use serde::Serialize;
 use zeroset::model::{CutAndFill, Volume, VolumeParams, cut_and_fill, volume};
 
 use super::open::open;
-use super::{start, work, write_report};
+use super::{start, work};
 use crate::args::{Bounds, Plane, VolumeArgs};
 use crate::console::Console;
 use crate::error::CliError;
 use crate::input::{check_output_and_report, is_stream};
+use crate::report::write_report;
 use crate::table::{columns, significant};
 
 pub(crate) fn run(args: &VolumeArgs) -> Result<(), CliError> {
@@ -35,7 +36,7 @@ pub(crate) fn run(args: &VolumeArgs) -> Result<(), CliError> {
     if !args.run.report.as_deref().is_some_and(is_stream) {
         Console::print(&content.text())?;
     }
-    write_report(&args.run, content)
+    write_report(args.run.report.as_deref(), content)
 }
 
 #[derive(Debug, Serialize)]
