@@ -9,6 +9,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use zeroset::monitor::Monitor;
 
 use crate::console::Console;
+use crate::error::CliError;
 use crate::interrupt;
 
 /// Steps of the bar.
@@ -99,6 +100,15 @@ impl Monitor for Progress {
     fn cancelled(&self) -> bool {
         interrupt::requested()
     }
+}
+
+/// Does work that shows its progress and looks often whether the user wants to stop.
+///
+/// # Errors
+/// [`CliError::Interrupted`] if the user wants to stop, whatever the work returned.
+pub(crate) fn with_progress<T>(console: Console, work: impl FnOnce(&Progress) -> T) -> Result<T, CliError> {
+    let progress = Progress::new(console);
+    interrupt::watched(|| work(&progress))
 }
 
 /// The time left, in words, if `share` was done after `spent`, and `since` has passed then.

@@ -10,7 +10,7 @@ use crate::args::SimplifyArgs;
 use crate::console::Console;
 use crate::error::CliError;
 use crate::input::{check_output_and_report, refuse_mesh_stream};
-use crate::progress::Progress;
+use crate::progress::with_progress;
 use crate::report::{OutputReport, write_report};
 use crate::table::{count, position, significant};
 use crate::{interrupt, threads};
@@ -23,9 +23,7 @@ pub(crate) fn run(args: &SimplifyArgs) -> Result<(), CliError> {
     // One of the two is always given.
     let target = args.target.params().unwrap_or_default();
     let params = SimplifyParams { sharp_angle: args.sharp_angle.to_radians(), ..target };
-    let progress = Progress::new(console);
-    let result = interrupt::watched(|| simplify(&mesh, &params, &progress))?;
-    progress.finish();
+    let result = with_progress(console, |progress| simplify(&mesh, &params, progress))?;
     let (simplified, report) = result.map_err(|error| named(error, &args.input))?;
     let output = write(args, &simplified)?;
     console.say(&summary(&report, &output));

@@ -9,8 +9,7 @@ use super::{figure, row, share};
 use crate::args::CompareArgs;
 use crate::console::Console;
 use crate::error::CliError;
-use crate::interrupt;
-use crate::progress::Progress;
+use crate::progress::{Progress, with_progress};
 use crate::report::to_json;
 use crate::table::{columns, count};
 
@@ -32,9 +31,8 @@ pub(super) fn run(args: &CompareArgs) -> Result<(), CliError> {
         sharp_angle: args.sharp_angle.to_radians(),
         ..CompareFeaturesParams::default()
     };
-    let progress = Progress::new(Console::Normal);
-    let report = interrupt::watched(|| compare_features(&found, &truth, cloud.as_ref(), &params, &progress))?;
-    progress.finish();
+    let compare = |progress: &Progress| compare_features(&found, &truth, cloud.as_ref(), &params, progress);
+    let report = with_progress(Console::Normal, compare)?;
     let report = report.map_err(|error| named(error, args))?;
     Console::print(&if args.json { to_json(&report) } else { table(&report) })
 }

@@ -10,8 +10,7 @@ use zeroset_io::read_mesh;
 use crate::args::CompareArgs;
 use crate::console::Console;
 use crate::error::CliError;
-use crate::interrupt;
-use crate::progress::Progress;
+use crate::progress::with_progress;
 use crate::report::to_json;
 use crate::table::{columns, count, significant};
 
@@ -28,9 +27,7 @@ pub(crate) fn run(args: &CompareArgs) -> Result<(), CliError> {
         sharp_angle: args.sharp_angle.to_radians(),
         seed: args.seed,
     };
-    let progress = Progress::new(Console::Normal);
-    let report = interrupt::watched(|| compare(&mesh, &truth, &params, &progress))?;
-    progress.finish();
+    let report = with_progress(Console::Normal, |progress| compare(&mesh, &truth, &params, progress))?;
     let report = report.map_err(|error| named(error, &args.first, second))?;
     Console::print(&if args.json { to_json(&report) } else { table(&report) })
 }

@@ -15,10 +15,10 @@ use crate::args::{FeaturesArgs, PostureChoice, SceneChoice};
 use crate::console::{Console, Lines};
 use crate::error::{CliError, in_words};
 use crate::input::{Input, SURVEYED, announced, check_inputs, check_outputs, is_stream, scene, up};
-use crate::progress::Progress;
+use crate::progress::{Progress, with_progress};
 use crate::report::write_report;
 use crate::table::name;
-use crate::{interrupt, memory, threads};
+use crate::{memory, threads};
 use report::{OutputReport, Report, Seconds};
 
 pub(crate) fn run(args: &FeaturesArgs) -> Result<(), CliError> {
@@ -28,18 +28,15 @@ pub(crate) fn run(args: &FeaturesArgs) -> Result<(), CliError> {
     let params = params(args, &formats);
     threads::start(args.run.threads)?;
 
-    let progress = Progress::new(console);
-    let (input, reading) = Input::read(&args.input, &progress)?;
-    progress.finish();
+    let (input, reading) = Input::read(&args.input, console)?;
     let mut lines = Lines::new(console);
     input.describe(console, &mut lines);
 
-    let progress = Progress::new(console);
     let failed = |source: FeatureError| CliError::Features { inputs: in_words(&args.input.inputs), source };
     let detecting = Instant::now();
-    let (features, mut done) = interrupt::watched(|| detect(&input.cloud, &params, &progress))?.map_err(failed)?;
+    let found = with_progress(console, |progress| detect(&input.cloud, &params, progress))?;
+    let (features, mut done) = found.map_err(failed)?;
     let detected = detecting.elapsed().as_secs_f64();
-    progress.finish();
     if args.scene.scene == SceneChoice::Auto {
         if params.scene.is_some() {
             done.scene_reason = SURVEYED.to_owned();

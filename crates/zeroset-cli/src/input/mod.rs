@@ -83,7 +83,8 @@ pub(crate) struct ReadSeconds {
 
 impl Input {
     /// Reads all inputs and leaves out what the options leave out.
-    pub(crate) fn read(args: &InputArgs, progress: &Progress) -> Result<(Self, ReadSeconds), CliError> {
+    pub(crate) fn read(args: &InputArgs, console: Console) -> Result<(Self, ReadSeconds), CliError> {
+        let progress = Progress::new(console);
         let start = Instant::now();
         progress.stage(&format!("reading {}", in_words(&args.inputs)));
         let CloudFile { cloud, report } = read_clouds(&args.inputs)?;
@@ -91,7 +92,7 @@ impl Input {
 
         let start = Instant::now();
         progress.stage("choosing points");
-        let input = select::select(cloud, report, args, progress)?;
+        let input = select::select(cloud, report, args, &progress)?;
         Ok((input, ReadSeconds { read, select: start.elapsed().as_secs_f64() }))
     }
 }

@@ -5,19 +5,19 @@ use std::time::Instant;
 
 use serde::Serialize;
 use zeroset::model::{Model, Solid};
-use zeroset::reconstruct::{FittedReport, PlanReport, ReconstructError, plan};
+use zeroset::reconstruct::{FittedReport, PlanReport};
 use zeroset_io::{check_model_suffix, shown, write_model};
 
-use super::open::provenance;
-use crate::args::{FitArgs, SceneChoice};
+use super::open::{own_name, provenance};
+use crate::args::FitArgs;
 use crate::console::{Console, Lines};
-use crate::error::{CliError, in_words};
-use crate::input::{Input, Origin, SURVEYED, check_inputs, check_output_and_report};
-use crate::progress::Progress;
-use crate::reconstruct::{announce, known, params};
+use crate::error::CliError;
+use crate::input::{Input, Origin};
+use crate::progress::with_progress;
+use crate::reconstruct::{check_files, failed, known, params, planned};
 use crate::report::write_report;
 use crate::table::{bytes, count, length, name, significant};
-use crate::{interrupt, threads};
+use crate::threads;
 
 pub(crate) fn run(args: &FitArgs) -> Result<(), CliError> {
     let start = Instant::now();
@@ -26,24 +26,15 @@ pub(crate) fn run(args: &FitArgs) -> Result<(), CliError> {
     let mut params = params(&args.fit, &args.run, &formats);
     let lines_and_polygons = known::read(&args.fit)?;
     threads::start(args.run.threads)?;
-    let progress = Progress::new(console);
-    let (input, _) = Input::read(&args.input, &progress)?;
-    progress.finish();
+    let (input, _) = Input::read(&args.input, console)?;
     let mut lines = Lines::new(console);
     input.describe(console, &mut lines);
     params.constraints = known::place(lines_and_polygons, &args.fit.constraints, &input.cloud, &mut lines)?;
 
-    let progress = Progress::new(console);
-    let failed = |source: ReconstructError| CliError::Reconstruct { inputs: in_words(&args.input.inputs), source };
-    let mut plan = interrupt::watched(|| plan(&input.cloud, &params, &progress))?.map_err(failed)?;
-    if args.fit.scene.scene == SceneChoice::Auto && params.scene.is_some() {
-        plan.report.scene_reason = SURVEYED.to_owned();
-    }
-    announce(&plan.report, &args.fit, &mut lines);
-    let (fitted, report) = interrupt::watched(|| plan.fit(&progress))?.map_err(failed)?;
-    progress.finish();
-    let names = args.input.inputs.iter().map(|path| path.file_name().unwrap_or(path.as_os_str()));
-    let names = names.map(|name| name.to_string_lossy().into_owned()).collect();
+    let plan = planned(&input.cloud, &params, &args.input, &args.fit, console, &mut lines)?;
+    let done = with_progress(console, |progress| plan.fit(progress))?;
+    let (fitted, report) = done.map_err(|source| failed(&args.input, source))?;
+    let names = args.input.inputs.iter().map(|path| own_name(path)).collect();
     let model = Model {
         solid: Solid::Fitted(Arc::new(fitted)),
         crs: input.cloud.crs.clone(),
@@ -79,11 +70,7 @@ struct Content<'a> {
 /// What can be told to be wrong before anything is read.
 fn check(args: &FitArgs) -> Result<Vec<zeroset_io::CloudFormat>, CliError> {
     check_model_suffix(&args.output)?;
-    let formats = check_inputs(&args.input.inputs)?;
-    let read = [&args.input.inputs[..], &args.fit.constraints[..]].concat();
-    check_output_and_report(&read, Some(&args.output), args.run.report.as_deref())?;
-    known::check(&args.fit.constraints)?;
-    Ok(formats)
+    check_files(&args.input, &args.fit, Some(&args.output), &args.run)
 }
 
 /// What was decided, for whoever finds the model.

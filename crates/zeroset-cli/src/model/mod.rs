@@ -19,8 +19,8 @@ use zeroset_io::{WriteReport, shown};
 use crate::args::BriefRunArgs;
 use crate::console::Console;
 use crate::error::CliError;
-use crate::progress::Progress;
-use crate::{interrupt, threads};
+use crate::progress::{Progress, with_progress};
+use crate::threads;
 
 /// How much to say.
 fn console(run: &BriefRunArgs) -> Console {
@@ -33,10 +33,7 @@ fn work<T>(
     what: &str,
     work: impl FnOnce(&Progress) -> Result<T, ModelError>,
 ) -> Result<T, CliError> {
-    let progress = Progress::new(console(run));
-    let result = interrupt::watched(|| work(&progress))?;
-    progress.finish();
-    result.map_err(|source| CliError::Model { what: what.to_owned(), source })
+    with_progress(console(run), work)?.map_err(|source| CliError::Model { what: what.to_owned(), source })
 }
 
 /// Starts the threads that were asked for.

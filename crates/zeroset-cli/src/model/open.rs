@@ -50,8 +50,7 @@ impl Opener {
     /// Reads a file, if a name has the suffix of one, else an expression.
     pub(super) fn read(&mut self, text: &str) -> Result<Solid, CliError> {
         let path = file(text);
-        let name = path.as_deref().and_then(Path::file_name).map(|name| name.to_string_lossy().into_owned());
-        self.inputs.push(name.unwrap_or_else(|| text.to_owned()));
+        self.inputs.push(path.as_deref().map_or_else(|| text.to_owned(), own_name));
         Ok(match &path {
             Some(path) => self.files.read(path),
             None => self.files.expression(text),
@@ -77,6 +76,11 @@ fn file(text: &str) -> Option<PathBuf> {
     let path = Path::new(text);
     let is_tree = path.extension().is_some_and(|suffix| suffix.eq_ignore_ascii_case(TREE_SUFFIX));
     (is_model(path) || is_tree || MeshFormat::from_path(path).is_ok()).then(|| path.to_path_buf())
+}
+
+/// The name of a file without folders.
+pub(super) fn own_name(path: &Path) -> String {
+    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
 }
 
 /// The files among texts, which no output may replace.

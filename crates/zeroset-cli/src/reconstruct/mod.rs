@@ -3,24 +3,27 @@
 pub(crate) mod known;
 mod text;
 
+use std::path::Path;
 use std::time::Instant;
 
 use zeroset::cloud::Cloud;
 use zeroset::constraint::Constraints;
 use zeroset::mesh::Mesh;
 use zeroset::reconstruct::{
-    AttributeChoice, MinComponent, Plan, PlanReport, Quality, ReconstructError, ReconstructParams, ReconstructReport,
-    Resolution, Trim, plan,
+    AttributeChoice, MinComponent, Plan, PlanReport, Quality, ReconstructError, ReconstructParams, Resolution, Trim,
+    plan,
 };
 use zeroset_io::{CloudFormat, MeshFormat, WriteOptions, shown, write_mesh};
 
-use crate::args::{AttributesChoice, FitOptions, OrAuto, OrOff, QualityChoice, ReconstructArgs, RunArgs, SceneChoice};
+use crate::args::{
+    AttributesChoice, FitOptions, InputArgs, OrAuto, OrOff, QualityChoice, ReconstructArgs, RunArgs, SceneChoice,
+};
 use crate::console::{Console, Lines};
 use crate::error::{CliError, in_words};
 use crate::input::{Input, SURVEYED, announced, check_inputs, check_output_and_report, refuse_mesh_stream, scene, up};
-use crate::progress::Progress;
+use crate::progress::{Progress, with_progress};
 use crate::report::{OutputReport, Report, Seconds};
-use crate::{interrupt, memory, threads};
+use crate::{memory, threads};
 
 pub(crate) fn run(args: &ReconstructArgs) -> Result<(), CliError> {
     let start = Instant::now();
@@ -34,10 +37,8 @@ pub(crate) fn run(args: &ReconstructArgs) -> Result<(), CliError> {
     let known = known::read(&args.fit)?;
     threads::start(args.run.threads)?;
 
-    let progress = Progress::new(console);
-    let (mut input, reading) = Input::read(&args.input, &progress)?;
+    let (mut input, reading) = Input::read(&args.input, console)?;
     let mut seconds = Seconds { read: reading.read, select: reading.select, ..Seconds::default() };
-    progress.finish();
     if let Some(warning) = missing_attribute(args, &input.cloud) {
         input.warnings.insert(0, warning);
     }
@@ -45,16 +46,9 @@ pub(crate) fn run(args: &ReconstructArgs) -> Result<(), CliError> {
     input.describe(console, &mut lines);
     params.constraints = known::place(known, &args.fit.constraints, &input.cloud, &mut lines)?;
 
-    let progress = Progress::new(console);
-    let failed = |source: ReconstructError| CliError::Reconstruct { inputs: in_words(&args.input.inputs), source };
     let planning = Instant::now();
-    let mut plan = interrupt::watched(|| plan(&input.cloud, &params, &progress))?.map_err(failed)?;
+    let plan = planned(&input.cloud, &params, &args.input, &args.fit, console, &mut lines)?;
     seconds.plan = planning.elapsed().as_secs_f64();
-    progress.finish();
-    if args.fit.scene.scene == SceneChoice::Auto && params.scene.is_some() {
-        plan.report.scene_reason = SURVEYED.to_owned();
-    }
-    announce(&plan.report, &args.fit, &mut lines);
 
     if args.dry_run {
         lines.release();
@@ -64,7 +58,8 @@ pub(crate) fn run(args: &ReconstructArgs) -> Result<(), CliError> {
         }
         return report.write();
     }
-    let (mesh, done) = fit(plan, console, failed)?;
+    let done = with_progress(console, |progress| plan.run(progress))?;
+    let (mesh, done) = done.map_err(|source| failed(&args.input, source))?;
     let output = write(args, &mesh, &done.plan, &input, console, &mut seconds)?;
     let seconds = seconds.until(start);
     lines.release();
@@ -126,10 +121,20 @@ fn check(args: &ReconstructArgs) -> Result<Vec<CloudFormat>, CliError> {
         refuse_mesh_stream(output)?;
         MeshFormat::from_path(output)?;
     }
-    let formats = check_inputs(&args.input.inputs)?;
-    let read = [&args.input.inputs[..], &args.fit.constraints[..]].concat();
-    check_output_and_report(&read, args.output.as_deref(), args.run.report.as_deref())?;
-    known::check(&args.fit.constraints)?;
+    check_files(&args.input, &args.fit, args.output.as_deref(), &args.run)
+}
+
+/// Looks at the names of the files that are read and written. Returns the formats of the inputs.
+pub(crate) fn check_files(
+    input: &InputArgs,
+    fit: &FitOptions,
+    output: Option<&Path>,
+    run: &RunArgs,
+) -> Result<Vec<CloudFormat>, CliError> {
+    let formats = check_inputs(&input.inputs)?;
+    let read = [&input.inputs[..], &fit.constraints[..]].concat();
+    check_output_and_report(&read, output, run.report.as_deref())?;
+    known::check(&fit.constraints)?;
     Ok(formats)
 }
 
@@ -145,25 +150,33 @@ fn missing_attribute(args: &ReconstructArgs, cloud: &Cloud) -> Option<String> {
     (!there).then(|| format!("the points have no {name}, so the mesh will have none"))
 }
 
-/// Says what was decided for the user.
-pub(crate) fn announce(plan: &PlanReport, args: &FitOptions, lines: &mut Lines) {
-    if args.scene.scene == SceneChoice::Auto {
-        lines.say(announced(plan.scene, &plan.scene_reason));
+/// Plans, and says what was decided for the user.
+pub(crate) fn planned<'a>(
+    cloud: &'a Cloud,
+    params: &ReconstructParams,
+    input: &InputArgs,
+    fit: &FitOptions,
+    console: Console,
+    lines: &mut Lines,
+) -> Result<Plan<'a>, CliError> {
+    let plan = with_progress(console, |progress| plan(cloud, params, progress))?;
+    let mut plan = plan.map_err(|source| failed(input, source))?;
+    let report = &mut plan.report;
+    if fit.scene.scene == SceneChoice::Auto {
+        if params.scene.is_some() {
+            report.scene_reason = SURVEYED.to_owned();
+        }
+        lines.say(announced(report.scene, &report.scene_reason));
     }
-    if let Some(wanted) = plan.wanted_resolution {
-        lines.say(text::capped(plan, wanted));
+    if let Some(wanted) = report.wanted_resolution {
+        lines.say(text::capped(report, wanted));
     }
+    Ok(plan)
 }
 
-fn fit(
-    plan: Plan<'_>,
-    console: Console,
-    failed: impl Fn(ReconstructError) -> CliError,
-) -> Result<(Mesh, ReconstructReport), CliError> {
-    let progress = Progress::new(console);
-    let result = interrupt::watched(|| plan.run(&progress))?.map_err(failed);
-    progress.finish();
-    result
+/// The error with the names of the files that it is about.
+pub(crate) fn failed(input: &InputArgs, source: ReconstructError) -> CliError {
+    CliError::Reconstruct { inputs: in_words(&input.inputs), source }
 }
 
 fn write(
