@@ -19,6 +19,7 @@ use crate::console::Console;
 use crate::error::CliError;
 use crate::input::{Input, Origin, is_stream};
 use crate::memory;
+use crate::table::position;
 
 /// Version of the shape of reports.
 const SCHEMA_VERSION: u32 = 1;
@@ -97,8 +98,8 @@ pub(crate) struct OutputReport {
     format: &'static str,
     bytes: u64,
     /// What to add to the coordinates in the file, where they are local.
-    pub(crate) local_offset: Option<[f64; 3]>,
-    pub(crate) attributes_left_out: Vec<&'static str>,
+    local_offset: Option<[f64; 3]>,
+    attributes_left_out: Vec<&'static str>,
 }
 
 impl OutputReport {
@@ -110,6 +111,21 @@ impl OutputReport {
             local_offset: report.local_offset,
             attributes_left_out: report.attributes_left_out,
         })
+    }
+
+    /// A line end and what to add to local coordinates; nothing where they are those of the input.
+    pub(crate) fn offset_line(&self) -> String {
+        self.local_offset.filter(|offset| *offset != [0.0; 3]).map_or_else(String::new, |offset| {
+            format!("\nits coordinates are local: add {} for those of the input", position(offset, 0))
+        })
+    }
+
+    /// A line end and the attributes that the format has no place for; nothing without any.
+    pub(crate) fn left_out_line(&self) -> String {
+        if self.attributes_left_out.is_empty() {
+            return String::new();
+        }
+        format!("\nthe format has no place for {}", self.attributes_left_out.join(", "))
     }
 }
 

@@ -12,7 +12,7 @@ use crate::error::CliError;
 use crate::input::{check_output_and_report, refuse_mesh_stream};
 use crate::progress::with_progress;
 use crate::report::{OutputReport, write_report};
-use crate::table::{count, position, significant};
+use crate::table::{count, significant};
 use crate::{interrupt, threads};
 
 pub(crate) fn run(args: &SimplifyArgs) -> Result<(), CliError> {
@@ -70,13 +70,8 @@ fn summary(report: &SimplifyReport, output: &OutputReport) -> String {
         outcome(report),
         significant(report.seconds, 3),
     );
-    if let Some(offset) = output.local_offset.filter(|offset| *offset != [0.0; 3]) {
-        text += &format!("\nits coordinates are local: add {} for those of the input", position(offset, 0));
-    }
-    if !output.attributes_left_out.is_empty() {
-        text += &format!("\nthe format has no place for {}", output.attributes_left_out.join(", "));
-    }
-    text
+    text += &output.offset_line();
+    text + &output.left_out_line()
 }
 
 /// What a simplification made of how much, and how far that is off.

@@ -15,7 +15,7 @@ use crate::input::{check_output_and_report, refuse_mesh_stream};
 use crate::reconstruct::attributes;
 use crate::report::{OutputReport, write_report};
 use crate::simplify::outcome;
-use crate::table::{count, position, significant};
+use crate::table::{count, significant};
 
 pub(crate) fn run(args: &MeshArgs) -> Result<(), CliError> {
     check(&args.output, &args.run, [args.model.as_str()])?;
@@ -83,17 +83,12 @@ fn summary(done: &MeshReport, output: &OutputReport, seconds: f64) -> String {
         significant(done.cell, 4),
         significant(seconds, 3),
     );
-    if let Some(offset) = output.local_offset.filter(|offset| *offset != [0.0; 3]) {
-        text += &format!("\nits coordinates are local: add {} for those of the input", position(offset, 0));
-    }
+    text += &output.offset_line();
     if let Some(left) = done.sharp.map(|sharp| sharp.intersections).filter(|left| *left > 0) {
         text += &format!("\n{} pairs of triangles cut through each other; smaller --cell may help", count(left));
     }
     if let Some(report) = &done.simplify {
         text += &format!("\nsimplified: {}", outcome(report));
     }
-    if !output.attributes_left_out.is_empty() {
-        text += &format!("\nthe format has no place for {}", output.attributes_left_out.join(", "));
-    }
-    text
+    text + &output.left_out_line()
 }

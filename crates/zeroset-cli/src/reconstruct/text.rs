@@ -93,9 +93,7 @@ pub(super) fn summary(done: &ReconstructReport, output: &OutputReport, seconds: 
         length(done.plan.resolution, input.read.unit),
         significant(seconds, 3),
     );
-    if let Some(offset) = output.local_offset.filter(|offset| *offset != [0.0; 3]) {
-        text += &format!("\nits coordinates are local: add {} for those of the input", position(offset, 0));
-    }
+    text += &output.offset_line();
     if let Some(report) = &done.simplify {
         text += &format!("\nsimplified: {}", outcome(report));
     }
@@ -111,10 +109,7 @@ pub(super) fn summary(done: &ReconstructReport, output: &OutputReport, seconds: 
         text += "\nthe surface runs out of the box of the points, so neither side is clearly outside: the upper one was taken; \
                  --scene terrain or airborne knows";
     }
-    if !output.attributes_left_out.is_empty() {
-        text += &format!("\nthe format has no place for {}", output.attributes_left_out.join(", "));
-    }
-    text
+    text + &output.left_out_line()
 }
 
 /// What became of the smallest pieces.
