@@ -1,13 +1,11 @@
 //! `zeroset sample`.
 
-use std::path::Path;
-
 use zeroset::sample::Scene;
 use zeroset_io::{CloudFormat, MeshFormat, WriteOptions, check_writable, write_cloud, write_mesh};
 
 use crate::args::SampleArgs;
 use crate::error::CliError;
-use crate::input::refuse_same;
+use crate::input::{is_stream, refuse_same};
 
 pub(crate) fn run(args: &SampleArgs) -> Result<(), CliError> {
     check(args)?;
@@ -32,7 +30,7 @@ fn check(args: &SampleArgs) -> Result<(), CliError> {
         refuse_same((&args.output, "the cloud"), (truth, "the truth"))?;
         check_writable(truth)?;
     }
-    if args.output != Path::new("-") {
+    if !is_stream(&args.output) {
         check_writable(&args.output)?;
     }
     Ok(())

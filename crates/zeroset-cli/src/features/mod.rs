@@ -9,12 +9,12 @@ use std::time::Instant;
 use serde_json::Value;
 use zeroset::feature::{FeatureError, FeatureParams, FeatureReport, Features, Posture, detect};
 use zeroset::monitor::Monitor;
-use zeroset_io::{CloudFormat, FeatureFormat, FeatureOutput, WriteOptions, shown, write_features};
+use zeroset_io::{CloudFormat, FeatureFormat, FeatureOutput, WriteOptions, write_features};
 
 use crate::args::{FeaturesArgs, PostureChoice, SceneChoice};
 use crate::console::{Console, Lines};
 use crate::error::{CliError, in_words};
-use crate::input::{Input, SURVEYED, announced, check_inputs, check_outputs, is_stream, scene, up};
+use crate::input::{Input, SURVEYED, announced, check_inputs, check_outputs, scene, shown_output, up};
 use crate::progress::{Progress, with_progress};
 use crate::report::write_report;
 use crate::table::name;
@@ -110,7 +110,7 @@ fn write(
     let parameters = parameters(args, params, done);
     let output = FeatureOutput { features, cloud: Some(&input.cloud), parameters: &parameters, options: &options };
     let write = |path: &Path| {
-        let shown = if is_stream(path) { "standard output".to_owned() } else { shown(path) };
+        let shown = shown_output(path);
         progress.stage(&format!("writing {shown}"));
         let report = write_features(path, output)?;
         Ok(OutputReport { path: shown, format: FeatureFormat::from_path(path)?.name(), bytes: report.bytes })

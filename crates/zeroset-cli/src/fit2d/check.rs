@@ -6,7 +6,7 @@ use zeroset_io::{IoError, PlanarFormat, by_suffix, check_writable};
 
 use crate::args::{BasisChoice, DomainChoice, Fit2dArgs};
 use crate::error::CliError;
-use crate::input::refuse_same;
+use crate::input::{is_stream, refuse_same};
 
 /// What is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -61,8 +61,4 @@ fn output(path: &Path) -> Result<Output, CliError> {
         return Ok(Output::Stream);
     }
     Ok(by_suffix(path, "picture or figures", &KNOWN)?)
-}
-
-pub(super) fn is_stream(path: &Path) -> bool {
-    path == Path::new("-")
 }

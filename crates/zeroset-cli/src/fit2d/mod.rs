@@ -15,11 +15,12 @@ use zeroset::fit::normalized::{
     Order2, Smoothness, Solver, SquaredGradient,
 };
 use zeroset::monitor::Monitor;
-use zeroset_io::{PlanarData, planar_json, read_planar, shown};
+use zeroset_io::{PlanarData, planar_json, read_planar};
 
 use crate::args::{BranchesChoice, Fit2dArgs, NormalizationChoice, SolverChoice};
 use crate::console::Console;
 use crate::error::CliError;
+use crate::input::shown_output;
 use crate::interrupt;
 use crate::progress::Progress;
 use crate::report::write_text;
@@ -85,7 +86,7 @@ pub(crate) fn run(args: &Fit2dArgs) -> Result<(), CliError> {
     if let Some(note) = plan.note {
         console.say(&format!("note: {note}"));
     }
-    console.say(&report::summary(&done, &shown_output(args)));
+    console.say(&report::summary(&done, &shown_output(&args.output)));
     Ok(())
 }
 
@@ -175,8 +176,4 @@ fn write(args: &Fit2dArgs, output: Output, done: &Done<'_>) -> Result<(), CliErr
         Output::Svg => picture::draw(args, done),
     };
     write_text(&args.output, &text)
-}
-
-fn shown_output(args: &Fit2dArgs) -> String {
-    if check::is_stream(&args.output) { "standard output".to_owned() } else { shown(&args.output) }
 }

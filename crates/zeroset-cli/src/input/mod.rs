@@ -5,7 +5,8 @@ mod scene;
 mod select;
 
 pub(crate) use names::{
-    check_inputs, check_output_and_report, check_outputs, is_stream, refuse_mesh_stream, refuse_same,
+    check_inputs, check_is_file, check_output_and_report, check_outputs, is_stream, refuse_mesh_stream, refuse_same,
+    shown_output,
 };
 pub(crate) use scene::{SURVEYED, announced, scene, up};
 

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use zeroset_io::{CloudFormat, IoError, MeshFormat, check_writable};
+use zeroset_io::{CloudFormat, IoError, MeshFormat, check_writable, shown};
 
 use crate::error::CliError;
 
@@ -14,12 +14,15 @@ pub(crate) fn check_inputs(inputs: &[PathBuf]) -> Result<Vec<CloudFormat>, CliEr
         return Err(same(Path::new("-"), "an input", "another input"));
     }
     for input in inputs.iter().filter(|path| !is_stream(path)) {
-        let facts = std::fs::metadata(input).map_err(|source| IoError::from_system(input, source))?;
-        if facts.is_dir() {
-            return Err(IoError::IsDirectory { path: input.clone() }.into());
-        }
+        check_is_file(input)?;
     }
     Ok(formats)
+}
+
+/// Refuses what is not there, and folders.
+pub(crate) fn check_is_file(path: &Path) -> Result<(), IoError> {
+    let facts = std::fs::metadata(path).map_err(|source| IoError::from_system(path, source))?;
+    if facts.is_dir() { Err(IoError::IsDirectory { path: path.to_path_buf() }) } else { Ok(()) }
 }
 
 /// Looks at the files that will be written: they can be, are no inputs, and are all different. Standard output takes
@@ -75,6 +78,11 @@ pub(crate) fn refuse_mesh_stream(output: &Path) -> Result<(), CliError> {
 
 pub(crate) fn is_stream(path: &Path) -> bool {
     path == Path::new("-")
+}
+
+/// The name of an output in messages.
+pub(crate) fn shown_output(path: &Path) -> String {
+    if is_stream(path) { "standard output".to_owned() } else { shown(path) }
 }
 
 /// Whether two names stand for one file, there or not.

@@ -4,22 +4,20 @@ use std::path::{Path, PathBuf};
 
 use zeroset::cloud::Cloud;
 use zeroset::constraint::Constraints;
-use zeroset_io::{ConstraintFile, ConstraintFormat, IoError, read_constraints, shown};
+use zeroset_io::{ConstraintFile, ConstraintFormat, read_constraints, shown};
 
 use crate::args::{FitOptions, PolygonsChoice};
 use crate::cloud_box::bounds;
 use crate::console::Lines;
 use crate::error::CliError;
+use crate::input::check_is_file;
 use crate::table::{count, position};
 
 /// Looks at the names before anything is read.
 pub(crate) fn check(paths: &[PathBuf]) -> Result<(), CliError> {
     for path in paths {
         ConstraintFormat::from_path(path)?;
-        let facts = std::fs::metadata(path).map_err(|source| IoError::from_system(path, source))?;
-        if facts.is_dir() {
-            return Err(IoError::IsDirectory { path: path.clone() }.into());
-        }
+        check_is_file(path)?;
     }
     Ok(())
 }
