@@ -21,6 +21,22 @@ pub(crate) fn columns(rows: &[Vec<String>]) -> String {
     out
 }
 
+/// A row of words.
+pub(crate) fn words(row: &[&str]) -> Vec<String> {
+    row.iter().map(|word| (*word).to_owned()).collect()
+}
+
+/// Wall seconds of each stage.
+pub(crate) fn stages(seconds: &[(&str, f64)]) -> String {
+    let rows = seconds.iter().map(|(stage, seconds)| vec![(*stage).to_owned(), clock(*seconds)]);
+    columns(&std::iter::once(words(&["stage", "seconds"])).chain(rows).collect::<Vec<_>>())
+}
+
+/// Seconds to the millisecond.
+pub(crate) fn clock(seconds: f64) -> String {
+    format!("{seconds:.3}")
+}
+
 /// Names and values below each other.
 pub(crate) fn pairs(rows: &[(&str, String)]) -> String {
     let width = rows.iter().map(|(name, _)| name.len()).max().unwrap_or(0);

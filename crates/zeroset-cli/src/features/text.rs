@@ -4,7 +4,7 @@ use zeroset::feature::{FeatureReport, Features};
 
 use super::report::{Kinds, OutputReport, Seconds};
 use crate::input::Input;
-use crate::table::{bytes, columns, count, length, name, pairs, significant};
+use crate::table::{bytes, columns, count, length, name, pairs, significant, stages, words};
 
 /// That nothing is flat, and what may help.
 pub(super) fn no_planes(done: &FeatureReport) -> String {
@@ -49,18 +49,13 @@ fn counted(n: usize, what: &str) -> String {
 /// Stages, parameters and what was found, for `--verbose`.
 pub(super) fn tables(features: &Features, done: &FeatureReport, seconds: &Seconds, input: &Input) -> String {
     let unit = input.read.unit;
-    let clock = |s: f64| format!("{s:.3}");
-    let words = |row: &[&str]| row.iter().map(|w| (*w).to_owned()).collect::<Vec<_>>();
-    let mut stages = vec![words(&["stage", "seconds"])];
-    for (stage, s) in [
+    let stages = stages(&[
         ("read", seconds.read),
         ("select", seconds.select),
         ("detect", seconds.detect),
         ("write", seconds.write),
         ("total", seconds.total),
-    ] {
-        stages.push(vec![stage.to_owned(), clock(s)]);
-    }
+    ]);
     let figures = pairs(&[
         ("spacing", length(done.spacing, unit)),
         ("noise", length(done.noise, unit)),
@@ -95,7 +90,7 @@ pub(super) fn tables(features: &Features, done: &FeatureReport, seconds: &Second
             if plane.oriented { "outward" } else { "unknown" }.to_owned(),
         ]);
     }
-    let mut text = [columns(&stages), figures, columns(&kinds), columns(&planes)].join("\n");
+    let mut text = [stages, figures, columns(&kinds), columns(&planes)].join("\n");
     if features.planes.len() > LISTED {
         text += &format!("and {} smaller ones\n", count(features.planes.len() - LISTED));
     }

@@ -2,14 +2,16 @@
 
 use zeroset::constraint::ConstraintPlan;
 use zeroset::fit::cascade::PolishParams;
-use zeroset::mesh::{Mesh, SimplifyParams, topology};
+use zeroset::mesh::{Mesh, SimplifyParams, Topology, topology};
 use zeroset::reconstruct::{PlanReport, ReconstructReport};
 use zeroset_io::LinearUnit;
 
 use crate::input::Input;
 use crate::report::{ComponentsReport, OutputReport, Seconds};
 use crate::simplify::outcome;
-use crate::table::{bytes, columns, count, decimals_for, length, name, pairs, position, significant};
+use crate::table::{
+    bytes, clock, columns, count, decimals_for, length, name, pairs, position, significant, stages, words,
+};
 
 /// That memory made the result coarser than the points are.
 pub(super) fn capped(plan: &PlanReport, wanted: f64) -> String {
@@ -125,10 +127,7 @@ fn pieces(components: &ComponentsReport) -> String {
 
 /// Stages, levels and the mesh, for `--verbose`.
 pub(super) fn tables(done: &ReconstructReport, seconds: &Seconds, mesh: &Mesh) -> String {
-    let clock = |s: f64| format!("{s:.3}");
-    let words = |row: &[&str]| row.iter().map(|w| (*w).to_owned()).collect::<Vec<_>>();
-    let mut stages = vec![words(&["stage", "seconds"])];
-    for (stage, s) in [
+    let stages = stages(&[
         ("read", seconds.read),
         ("select", seconds.select),
         ("plan", done.seconds.plan),
@@ -141,9 +140,20 @@ pub(super) fn tables(done: &ReconstructReport, seconds: &Seconds, mesh: &Mesh) -
         ("attributes", done.seconds.attributes),
         ("write", seconds.write),
         ("total", seconds.total),
-    ] {
-        stages.push(vec![stage.to_owned(), clock(s)]);
+    ]);
+    let mut text = format!("{stages}\n{}", levels(done));
+    if let Ok(topology) = topology(mesh) {
+        text += &format!("\n{}\n", components(&topology));
     }
+    text += &format!("{}\n", pieces(&ComponentsReport::new(done)));
+    if let Some(peak) = crate::memory::peak() {
+        text += &format!("{} of memory at most, {} expected\n", bytes(peak), bytes(done.plan.expected_bytes));
+    }
+    text
+}
+
+/// The levels of the fit, a row each.
+fn levels(done: &ReconstructReport) -> String {
     let mut levels =
         vec![words(&["level", "cell", "occupied", "nodes", "start", "steps", "R before", "R after", "seconds"])];
     for level in &done.fit.levels {
@@ -160,28 +170,24 @@ pub(super) fn tables(done: &ReconstructReport, seconds: &Seconds, mesh: &Mesh) -
             clock(level.seconds),
         ]);
     }
-    let mut text = format!("{}\n{}", columns(&stages), columns(&levels));
-    if let Ok(topology) = topology(mesh) {
-        let largest = topology.components.iter().map(|c| c.area).fold(0.0, f64::max);
-        text += &format!(
-            "\n{} with over 1 % of the triangles, {} in all; the largest holds {:.1} % of the area; {}\n",
-            if topology.large_components == 1 {
-                "1 component".to_owned()
-            } else {
-                format!("{} components", topology.large_components)
-            },
-            count(topology.components.len()),
-            100.0 * largest / topology.area,
-            if topology.closed {
-                "closed".to_owned()
-            } else {
-                format!("{} boundary edges", count(topology.boundary_edges))
-            },
-        );
-    }
-    text += &format!("{}\n", pieces(&ComponentsReport::new(done)));
-    if let Some(peak) = crate::memory::peak() {
-        text += &format!("{} of memory at most, {} expected\n", bytes(peak), bytes(done.plan.expected_bytes));
-    }
-    text
+    columns(&levels)
+}
+
+/// How many components there are, and whether they are closed.
+fn components(topology: &Topology) -> String {
+    let largest = topology.components.iter().map(|c| c.area).fold(0.0, f64::max);
+    let large = match topology.large_components {
+        1 => "1 component".to_owned(),
+        n => format!("{n} components"),
+    };
+    let closed = if topology.closed {
+        "closed".to_owned()
+    } else {
+        format!("{} boundary edges", count(topology.boundary_edges))
+    };
+    format!(
+        "{large} with over 1 % of the triangles, {} in all; the largest holds {:.1} % of the area; {closed}",
+        count(topology.components.len()),
+        100.0 * largest / topology.area,
+    )
 }
