@@ -29,15 +29,10 @@ pub const TETRAHEDRA: [Tetrahedron; 6] = [
 #[inline]
 #[must_use]
 pub fn tetrahedron_of<T: PartialOrd + Copy>(f: [T; 3]) -> usize {
+    // A table, as a branch would go either way as often.
+    const OF: [u8; 8] = [5, 4, 2, 1, 3, 4, 2, 0];
     let (xy, xz, yz) = (f[0] >= f[1], f[0] >= f[2], f[1] >= f[2]);
-    match (xy, xz, yz) {
-        (true, true, true) => 0,
-        (true, true, false) => 1,
-        (false, true, _) => 2,
-        (false, false, true) => 3,
-        (true, false, _) => 4,
-        (false, false, false) => 5,
-    }
+    OF[usize::from(xy) | usize::from(xz) << 1 | usize::from(yz) << 2].into()
 }
 
 /// The barycentric weights of a point in tetrahedron `t`, in the order of its corners. They sum to one.

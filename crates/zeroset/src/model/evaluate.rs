@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::domain::Local;
 use super::{ModelError, Solid};
 use crate::monitor::{Monitor, Steps};
-use crate::vec3;
+use crate::vec3::{self, Vec3};
 
 /// F at some positions.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -17,7 +17,7 @@ pub struct Values {
 }
 
 /// Positions that one thread takes at a time.
-const CHUNK: usize = 1 << 12;
+const CHUNK: usize = 1 << 10;
 
 /// F and its gradient at world positions, on all threads.
 ///
@@ -38,8 +38,11 @@ pub fn evaluate(solid: &Solid, positions: &[[f64; 3]], monitor: &dyn Monitor) ->
     let mut all = Values { values: vec![0.0; positions.len()], gradients: vec![[0.0; 3]; positions.len()] };
     let chunks = positions.par_chunks(CHUNK).zip(all.values.par_chunks_mut(CHUNK));
     chunks.zip(all.gradients.par_chunks_mut(CHUNK)).try_for_each(|((positions, values), gradients)| {
-        for ((p, value), gradient) in positions.iter().zip(values).zip(gradients) {
-            (*value, *gradient) = local.field.value_and_gradient(vec3::sub(*p, local.origin));
+        let own: Vec<Vec3> = positions.iter().map(|&p| vec3::sub(p, local.origin)).collect();
+        let mut found = vec![(0.0, [0.0; 3]); own.len()];
+        local.field.evaluate(&own, &mut found);
+        for ((found, value), gradient) in found.into_iter().zip(values).zip(gradients) {
+            (*value, *gradient) = found;
         }
         steps.advance(positions.len())
     })?;

@@ -16,6 +16,9 @@ macro_rules! forwarded {
             fn value_and_gradient(&self, p: [f64; 3]) -> (f64, [f64; 3]) {
                 self.0.value_and_gradient(p)
             }
+            fn evaluate(&self, points: &[[f64; 3]], found: &mut [(f64, [f64; 3])]) {
+                self.0.evaluate(points, found);
+            }
             fn metric(&self) -> $crate::field::Metric {
                 self.0.metric()
             }

@@ -178,6 +178,15 @@ impl Field for Placed {
         (self.placement.scale * value, self.placement.of_direction(gradient))
     }
 
+    fn evaluate(&self, points: &[[f64; 3]], found: &mut [(f64, [f64; 3])]) {
+        let own: Vec<Vec3> = points.iter().map(|&p| self.placement.back(p)).collect();
+        self.field.evaluate(&own, found);
+        for (value, gradient) in found {
+            *value *= self.placement.scale;
+            *gradient = self.placement.of_direction(*gradient);
+        }
+    }
+
     fn metric(&self) -> Metric {
         self.field.metric()
     }

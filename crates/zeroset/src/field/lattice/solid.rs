@@ -34,6 +34,9 @@ struct Place {
     within: [f64; 3],
 }
 
+/// Positions whose blocks are found before their values are read.
+const TOGETHER: usize = 64;
+
 impl LatticeSolid {
     /// The solid of a fitted F; `metric` tells what its values are.
     #[must_use]
@@ -77,31 +80,38 @@ impl LatticeSolid {
         place
     }
 
-    /// F at the corners of a cell; bit 0 of the number of a corner is x, bit 1 is y, bit 2 is z.
-    fn corners(&self, cell: [u32; 3]) -> [f32; 8] {
+    /// The block of a cell, if it is stored.
+    fn block(&self, cell: [u32; 3]) -> Option<usize> {
+        self.field.blocks.find([cell[0] / 8, cell[1] / 8, cell[2] / 8])
+    }
+
+    /// F at the corners of a cell in a block; bit 0 of the number of a corner is x, bit 1 is y, bit 2 is z.
+    fn corners(&self, block: Option<usize>, cell: [u32; 3]) -> [f32; 8] {
         let field = &self.field;
-        let block = cell.map(|c| c / 8);
-        let Some(b) = field.blocks.find(block) else { return self.corners_of_empty(block, cell) };
-        let [x, y, z] = cell.map(|c| c as usize & 7);
+        let Some(b) = block else { return self.corners_of_empty(cell) };
+        let [x, y, z] = [cell[0] as usize & 7, cell[1] as usize & 7, cell[2] as usize & 7];
+        let first = b * BLOCK_NODES + (x | y << 3 | z << 6);
         if x < 7 && y < 7 && z < 7 {
-            let first = b * BLOCK_NODES + (x | y << 3 | z << 6);
-            let values = &field.values[first..first + 74];
-            return [0, 1, 8, 9, 64, 65, 72, 73].map(|step| values[step]);
+            let v = &field.values[first..first + 74];
+            return [v[0], v[1], v[8], v[9], v[64], v[65], v[72], v[73]];
         }
-        std::array::from_fn(|corner| {
+        let mut values = [0.0; 8];
+        for (corner, value) in values.iter_mut().enumerate() {
             let node = [x + (corner & 1), y + (corner >> 1 & 1), z + (corner >> 2)];
-            let step = node.map(|c| (c >> 3) as i32);
+            let step = [(node[0] >> 3) as i32, (node[1] >> 3) as i32, (node[2] >> 3) as i32];
             let next = field.blocks.neighbors[b][neighbor_code(step)];
-            if next == NONE {
-                return self.cover().value_in(std::array::from_fn(|a| block[a] + step[a] as u32));
-            }
-            field.values[next as usize * BLOCK_NODES + (node[0] & 7 | (node[1] & 7) << 3 | (node[2] & 7) << 6)]
-        })
+            *value = if next == NONE {
+                self.cover().value_in(std::array::from_fn(|a| cell[a] / 8 + step[a] as u32))
+            } else {
+                field.values[next as usize * BLOCK_NODES + (node[0] & 7 | (node[1] & 7) << 3 | (node[2] & 7) << 6)]
+            };
+        }
+        values
     }
 
     #[cold]
-    fn corners_of_empty(&self, block: [u32; 3], cell: [u32; 3]) -> [f32; 8] {
-        let value = self.cover().value_in(block);
+    fn corners_of_empty(&self, cell: [u32; 3]) -> [f32; 8] {
+        let value = self.cover().value_in(cell.map(|c| c / 8));
         if cell.iter().all(|c| c & 7 < 7) {
             return [value; 8];
         }
@@ -117,12 +127,25 @@ impl LatticeSolid {
         Some(self.field.values[b * BLOCK_NODES + (node[0] & 7 | (node[1] & 7) << 3 | (node[2] & 7) << 6) as usize])
     }
 
-    /// The values at the four corners of the tetrahedron that holds a position, along its path, with the axes of the path and the place.
-    fn path(&self, p: Vec3) -> ([f64; 4], [usize; 3], Place) {
-        let place = self.place(p);
-        let values = self.corners(place.cell);
-        let tetrahedron = TETRAHEDRA[crate::domain::tetrahedron_of(place.fraction)];
-        (tetrahedron.corners.map(|corner| f64::from(values[corner])), tetrahedron.axes, place)
+    /// The values at the four corners of the tetrahedron that holds a place, along its path, and the axes of the path.
+    fn path(&self, block: Option<usize>, place: &Place) -> ([f64; 4], [usize; 3]) {
+        let values = self.corners(block, place.cell);
+        let tetrahedron = &TETRAHEDRA[crate::domain::tetrahedron_of(place.fraction)];
+        let [a, b, c, d] = tetrahedron.corners;
+        let values = [values[a].into(), values[b].into(), values[c].into(), values[d].into()];
+        (values, tetrahedron.axes)
+    }
+
+    /// F and its gradient at a place.
+    fn at(&self, block: Option<usize>, place: &Place) -> (f64, Vec3) {
+        let (values, axes) = self.path(block, place);
+        let (mut value, mut gradient) = (values[0], [0.0; 3]);
+        for i in 0..3 {
+            let step = values[i + 1] - values[i];
+            value += place.fraction[axes[i]] * step;
+            gradient[axes[i]] = place.within[axes[i]] * step / self.field.lattice.spacing;
+        }
+        (value, gradient)
     }
 
     /// Whether F has both signs on the face of a block.
@@ -138,7 +161,8 @@ impl LatticeSolid {
 
 impl Field for LatticeSolid {
     fn value(&self, p: [f64; 3]) -> f64 {
-        let (values, axes, place) = self.path(p);
+        let place = self.place(p);
+        let (values, axes) = self.path(self.block(place.cell), &place);
         let steps = (0..3).map(|i| place.fraction[axes[i]] * (values[i + 1] - values[i]));
         values[0] + steps.sum::<f64>()
     }
@@ -148,14 +172,23 @@ impl Field for LatticeSolid {
     }
 
     fn value_and_gradient(&self, p: [f64; 3]) -> (f64, [f64; 3]) {
-        let (values, axes, place) = self.path(p);
-        let (mut value, mut gradient) = (values[0], [0.0; 3]);
-        for i in 0..3 {
-            let step = values[i + 1] - values[i];
-            value += place.fraction[axes[i]] * step;
-            gradient[axes[i]] = place.within[axes[i]] * step / self.field.lattice.spacing;
+        let place = self.place(p);
+        self.at(self.block(place.cell), &place)
+    }
+
+    fn evaluate(&self, points: &[[f64; 3]], found: &mut [(f64, [f64; 3])]) {
+        // All blocks of some points are found before values are read: memory answers many questions at once, but not one that hangs on another.
+        let mut places: Vec<(Option<usize>, Place)> = Vec::with_capacity(TOGETHER);
+        for (points, found) in points.chunks(TOGETHER).zip(found.chunks_mut(TOGETHER)) {
+            places.clear();
+            places.extend(points.iter().map(|&p| {
+                let place = self.place(p);
+                (self.block(place.cell), place)
+            }));
+            for ((block, place), found) in places.iter().zip(found) {
+                *found = self.at(*block, place);
+            }
         }
-        (value, gradient)
     }
 
     fn metric(&self) -> Metric {
