@@ -145,6 +145,24 @@ impl ExpansionField {
         let found = domain.locate(p).or_else(|| domain.locate(vec3::lerp(p, middle, 1e-12)));
         found.unwrap_or_else(|| Place { simplex: 0, barycentric: domain.barycentric(0, p), position: p })
     }
+
+    /// Whether F has a sign on a whole box, as far as bounds tell after some halvings.
+    fn has_sign(&self, low: Vec3, high: Vec3, negative: bool, halvings: u32) -> bool {
+        let bounds = self.bounds(low, high);
+        if bounds.high < 0.0 || bounds.low > 0.0 {
+            return (bounds.high < 0.0) == negative;
+        }
+        if halvings == 0 || (self.value(vec3::lerp(low, high, 0.5)) < 0.0) != negative {
+            return false;
+        }
+        let middle = vec3::lerp(low, high, 0.5);
+        let part = |k: usize, a: usize| if k >> a & 1 == 0 { [low[a], middle[a]] } else { [middle[a], high[a]] };
+        let is_whole = |k: usize| (0..3).all(|a| low[a] < high[a] || k >> a & 1 == 0);
+        (0..8).filter(|&k| is_whole(k)).all(|k| {
+            let [from, to] = [0, 1].map(|end| std::array::from_fn(|a| part(k, a)[end]));
+            self.has_sign(from, to, negative, halvings - 1)
+        })
+    }
 }
 
 /// A grid with half the cells along each axis.
@@ -207,25 +225,5 @@ impl Field for ExpansionField {
             self.has_sign(low, high, sign, MOST_LEVELS)
         };
         (0..3).all(|a| is_clear(a, self.low[a]) && is_clear(a, self.high[a])).then_some([self.low, self.high])
-    }
-}
-
-impl ExpansionField {
-    /// Whether F has a sign on a whole box, as far as bounds tell after some halvings.
-    fn has_sign(&self, low: Vec3, high: Vec3, negative: bool, halvings: u32) -> bool {
-        let bounds = self.bounds(low, high);
-        if bounds.high < 0.0 || bounds.low > 0.0 {
-            return (bounds.high < 0.0) == negative;
-        }
-        if halvings == 0 || (self.value(vec3::lerp(low, high, 0.5)) < 0.0) != negative {
-            return false;
-        }
-        let middle = vec3::lerp(low, high, 0.5);
-        let part = |k: usize, a: usize| if k >> a & 1 == 0 { [low[a], middle[a]] } else { [middle[a], high[a]] };
-        let is_whole = |k: usize| (0..3).all(|a| low[a] < high[a] || k >> a & 1 == 0);
-        (0..8).filter(|&k| is_whole(k)).all(|k| {
-            let [from, to] = [0, 1].map(|end| std::array::from_fn(|a| part(k, a)[end]));
-            self.has_sign(from, to, negative, halvings - 1)
-        })
     }
 }
