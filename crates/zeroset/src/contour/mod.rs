@@ -51,7 +51,7 @@ mod sharp;
 pub mod simplicial;
 mod split;
 mod tetrahedra;
-mod thin;
+mod wedges;
 mod triangulate;
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::clip::clip_at_box;
 use super::dual::contour;
 use super::sharp::{FIELD_REACH, SharpReport, sharpen_field};
-use super::thin::blunt;
+use super::wedges::mend;
 use crate::domain::{BLOCK_NODES, Blocks, Lattice, LatticeError, Mask, block_key, block_of_key, dilate_box, mask_get};
 use crate::field::{Field, LatticeField};
 use crate::mesh::Mesh;
@@ -190,6 +190,6 @@ pub(crate) fn sampled(
     let values: Vec<f32> = values.collect();
     let reach = FIELD_REACH * lattice.spacing;
     let mut sampled = LatticeField::new(lattice, blocks, known, values);
-    blunt(&mut sampled, field, reach);
+    mend(&mut sampled, field, reach);
     Ok((sampled, looked_at))
 }

@@ -1,49 +1,41 @@
-//! Takes the tips of wedges off a sampled field.
-//!
-//! Where two sheets meet at a small angle, the solid, or the gap beside it, is thinner than a cell before their line, at any size of the cells. There nodes fall
-//! inside by chance, which makes crumbs and handles. So nodes that no cube of eight of their side holds change sides, if sheets meet near; the
-//! mesh ends bluntly there, and its rim is moved to the line later.
+//! Takes the tips of wedges off.
 
 use rayon::prelude::*;
+use rustc_hash::FxHashMap;
 
-use super::sharp::meeting;
-use crate::domain::{BLOCK_NODES, Blocks, Mask, NONE, mask_count, mask_get, mask_set, neighbor_code, shift};
+use super::Node;
+use crate::contour::sharp::meeting;
+use crate::domain::{BLOCK_NODES, Blocks, Mask, NONE, mask_get, mask_set, neighbor_code, shift};
 use crate::field::{Field, LatticeField};
 use crate::vec3::{self, Vec3};
 
 /// Rounds, each of which may go a cell farther from the line.
 const ROUNDS: usize = 8;
+/// Nodes along a side of the cubes, one of which must hold a node.
+const SIDE: usize = 4;
 /// Sides that are looked at for another sheet, in cells.
-const BESIDE: f64 = 1.0;
+const BESIDE: [f64; 2] = [1.0, 2.0];
 /// The value of a node that changed sides, in cells.
 const SLIGHT: f32 = 0.1;
 
-/// Changes the sides of nodes near where sheets meet, as far as `reach` from their line. Returns how many.
-pub(super) fn blunt(values: &mut LatticeField, field: &dyn Field, reach: f64) -> usize {
-    let mut changed = 0;
+/// Changes the sides of nodes near where sheets meet, as far as `reach` from their line. Returns the values that they had.
+pub(super) fn open(values: &mut LatticeField, field: &dyn Field, reach: f64) -> FxHashMap<Node, f32> {
+    let mut changed = FxHashMap::default();
+    let slight = SLIGHT * values.lattice.spacing as f32;
     for _ in 0..ROUNDS {
-        let mut now = 0;
+        let before = changed.len();
         for inside in [true, false] {
             let lonely = lonely(values, inside);
             let found = in_wedges(values, &lonely, field, reach);
-            now += found.iter().map(mask_count).sum::<usize>();
-            let slight = SLIGHT * values.lattice.spacing as f32;
-            let value = if inside { slight } else { -slight };
-            values
-                .values
-                .par_chunks_exact_mut(BLOCK_NODES)
-                .zip(&found)
-                .filter(|(_, found)| **found != [0; 8])
-                .for_each(|(values, found)| {
-                    for (local, own) in values.iter_mut().enumerate() {
-                        if mask_get(found, local) {
-                            *own = value;
-                        }
-                    }
-                });
+            for (b, found) in found.iter().enumerate().filter(|(_, found)| **found != [0; 8]) {
+                for local in (0..BLOCK_NODES).filter(|&local| mask_get(found, local)) {
+                    let node = b * BLOCK_NODES + local;
+                    changed.entry(node as Node).or_insert(values.values[node]);
+                    values.values[node] = if inside { slight } else { -slight };
+                }
+            }
         }
-        changed += now;
-        if now == 0 {
+        if changed.len() == before {
             break;
         }
     }
@@ -61,10 +53,10 @@ fn lonely(values: &LatticeField, inside: bool) -> Vec<Mask> {
     });
     // First nodes of whole cubes, and then all nodes of these.
     let mut cubes = side.clone();
-    for axis in 0..3 {
+    for axis in (0..3).flat_map(|axis| [axis; SIDE - 1]) {
         cubes = stepped(&values.blocks, &cubes, axis, true, u64::MAX, |own, next| own & next);
     }
-    for axis in 0..3 {
+    for axis in (0..3).flat_map(|axis| [axis; SIDE - 1]) {
         cubes = stepped(&values.blocks, &cubes, axis, false, u64::MAX, |own, next| own | next);
     }
     // At the rim of what is known a node that changed sides would leave a hole.
@@ -105,8 +97,9 @@ fn in_wedges(values: &LatticeField, nodes: &[Mask], field: &dyn Field, reach: f6
     let is_in_wedge = |p: Vec3| {
         let own = field.sheet(p);
         let mut tried = vec![own];
-        (0..27).filter(|code| *code != 13).any(|code| {
-            let step = [code % 3, code / 3 % 3, code / 9].map(|s| BESIDE * h * f64::from(s - 1));
+        let places = BESIDE.into_iter().flat_map(|far| (0..27).filter(|code| *code != 13).map(move |code| (far, code)));
+        places.into_iter().any(|(far, code)| {
+            let step = [code % 3, code / 3 % 3, code / 9].map(|s| far * h * f64::from(s - 1));
             let other = field.sheet(vec3::add(p, step));
             if tried.contains(&other) {
                 return false;
