@@ -49,10 +49,41 @@ fn hang_together(set: u16) -> bool {
     }
 }
 
-/// Gives nodes their values back, those first that are farthest from zero, unless that would alter the topology.
+/// A piece of its own is at least as thick as to have a node this far inside, in cells.
+const OWN_PIECE: f32 = 0.5;
+
+/// Gives nodes their values back, those first that are farthest from zero, unless that would alter the topology. Then begins anew with a piece of its own where
+/// what is left is thick and touches nothing.
 pub(super) fn regrow(values: &mut LatticeField, wanted: &FxHashMap<Node, f32>) {
-    let entry = |node: Node, value: f32| (value.abs().to_bits(), Reverse(node));
-    let mut open: BinaryHeap<_> = wanted.iter().map(|(&node, &value)| entry(node, value)).collect();
+    let mut seeds: Vec<Entry> = wanted.iter().map(|(&node, &value)| entry(node, value)).collect();
+    seeds.sort_unstable_by(|a, b| b.cmp(a));
+    grow(values, wanted, seeds.clone());
+    let thick = OWN_PIECE * values.lattice.spacing as f32;
+    for (_, Reverse(node)) in seeds {
+        let value = wanted[&node];
+        if value.abs() < thick {
+            break;
+        }
+        let Some(around) = around(values, node) else { continue };
+        let is_same = |node: Node| (values.values[node as usize] < 0.0) == (value < 0.0);
+        if is_same(node) || around.iter().any(|&next| is_same(next)) {
+            continue;
+        }
+        values.values[node as usize] = value;
+        grow(values, wanted, around.iter().filter_map(|&next| Some(entry(next, *wanted.get(&next)?))).collect());
+    }
+}
+
+/// A node in the order of growth: the distance of its value from zero, and the node.
+type Entry = (u32, Reverse<Node>);
+
+fn entry(node: Node, value: f32) -> Entry {
+    (value.abs().to_bits(), Reverse(node))
+}
+
+/// Gives nodes, and those around them, their values back where that is simple.
+fn grow(values: &mut LatticeField, wanted: &FxHashMap<Node, f32>, first: Vec<Entry>) {
+    let mut open = BinaryHeap::from(first);
     while let Some((_, Reverse(node))) = open.pop() {
         let value = wanted[&node];
         if (values.values[node as usize] < 0.0) == (value < 0.0) {
