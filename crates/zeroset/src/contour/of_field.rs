@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use super::clip::clip_at_box;
 use super::dual::contour;
-use super::sharp::{FIELD_REACH, SharpReport, sharpen_field};
+use super::sharp::{SharpReport, sharpen_field};
 use super::wedges::mend;
 use crate::domain::{BLOCK_NODES, Blocks, Lattice, LatticeError, Mask, block_key, block_of_key, dilate_box, mask_get};
 use crate::field::{Field, LatticeField};
@@ -188,8 +188,7 @@ pub(crate) fn sampled(
         })
     });
     let values: Vec<f32> = values.collect();
-    let reach = FIELD_REACH * lattice.spacing;
     let mut sampled = LatticeField::new(lattice, blocks, known, values);
-    mend(&mut sampled, field, reach);
+    mend(&mut sampled, field);
     Ok((sampled, looked_at))
 }

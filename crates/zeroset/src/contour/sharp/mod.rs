@@ -57,8 +57,7 @@ use crate::spatial::PointTree;
 use crate::vec3::Vec3;
 use embed::Raster;
 use insert::{Inserted, insert_creases};
-pub(super) use of_field::meeting;
-pub(crate) use of_field::{REACH as FIELD_REACH, sharpen_field};
+pub(crate) use of_field::sharpen_field;
 use stars::{Fans, Stars};
 
 /// What the surface is known to be.

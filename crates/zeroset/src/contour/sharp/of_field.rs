@@ -13,7 +13,7 @@ use crate::mesh::Mesh;
 use crate::vec3::{self, Vec3};
 
 /// A vertex goes no farther than this, in cells: the lattice loses the tip of a wedge of 15 degrees eight cells before its edge.
-pub(crate) const REACH: f64 = 8.0;
+const REACH: f64 = 8.0;
 /// Steps of Newton's method.
 const STEPS: usize = 20;
 /// It is there when the next step would be shorter than this, in cells.
@@ -172,12 +172,6 @@ fn follow_lines(mesh: &mut Mesh, field: &dyn Field, places: &[Place], inserted: 
             inserted.seats[v] = Seat::Along(place, direction);
         }
     }
-}
-
-/// Whether two sheets meet within a distance of a position.
-pub(in crate::contour) fn meeting(field: &dyn Field, a: u32, b: u32, from: Vec3, reach: f64) -> bool {
-    let place = meet(field, &[Place::OnField(a), Place::OnField(b)], from, reach / REACH);
-    place.is_some()
 }
 
 /// The place near a position where one to three sheets are zero; `None` if it is too far away, or they hardly cross.

@@ -6,8 +6,8 @@ use std::sync::LazyLock;
 
 use rustc_hash::FxHashMap;
 
-use super::Node;
-use crate::domain::{BLOCK_NODES, NONE, mask_get, neighbor_code};
+use super::{Node, stepped};
+use crate::domain::{BLOCK_NODES, mask_get};
 use crate::field::LatticeField;
 
 /// Steps to the fourteen nodes with which a node shares an edge.
@@ -49,28 +49,29 @@ fn hang_together(set: u16) -> bool {
     }
 }
 
-/// A piece of its own is at least as thick as to have a node this far inside, in cells.
+/// What is as thick as to have a node this far from the surface is no chance, in cells: it may be a piece of its own ...
 const OWN_PIECE: f32 = 0.5;
+/// ... or alter the topology of another.
+const SURE: f32 = 0.75;
 
-/// Gives nodes their values back, those first that are farthest from zero, unless that would alter the topology. Then begins anew with a piece of its own where
-/// what is left is thick and touches nothing.
+/// Gives nodes their values back, those first that are farthest from zero, unless that would alter the topology. Then, for what is left and thick, even so.
 pub(super) fn regrow(values: &mut LatticeField, wanted: &FxHashMap<Node, f32>) {
-    let mut seeds: Vec<Entry> = wanted.iter().map(|(&node, &value)| entry(node, value)).collect();
-    seeds.sort_unstable_by(|a, b| b.cmp(a));
-    grow(values, wanted, seeds.clone());
-    let thick = OWN_PIECE * values.lattice.spacing as f32;
-    for (_, Reverse(node)) in seeds {
+    let mut all: Vec<Entry> = wanted.iter().map(|(&node, &value)| entry(node, value)).collect();
+    all.sort_unstable_by(|a, b| b.cmp(a));
+    grow(values, wanted, all.clone());
+    let [own_piece, sure] = [OWN_PIECE, SURE].map(|cells| cells * values.lattice.spacing as f32);
+    for (_, Reverse(node)) in all {
         let value = wanted[&node];
-        if value.abs() < thick {
+        if value.abs() < own_piece {
             break;
         }
         let Some(around) = around(values, node) else { continue };
-        let is_same = |node: Node| (values.values[node as usize] < 0.0) == (value < 0.0);
-        if is_same(node) || around.iter().any(|&next| is_same(next)) {
+        let is_same = |node: Node| (values.values[node] < 0.0) == (value < 0.0);
+        if is_same(node) || value.abs() < sure && around.iter().any(|&next| is_same(next)) {
             continue;
         }
-        values.values[node as usize] = value;
-        grow(values, wanted, around.iter().filter_map(|&next| Some(entry(next, *wanted.get(&next)?))).collect());
+        values.values[node] = value;
+        grow(values, wanted, entries(wanted, around));
     }
 }
 
@@ -81,36 +82,37 @@ fn entry(node: Node, value: f32) -> Entry {
     (value.abs().to_bits(), Reverse(node))
 }
 
+/// Those of some nodes that want a value.
+fn entries(wanted: &FxHashMap<Node, f32>, nodes: [Node; 14]) -> Vec<Entry> {
+    nodes.iter().filter_map(|&node| Some(entry(node, *wanted.get(&node)?))).collect()
+}
+
 /// Gives nodes, and those around them, their values back where that is simple.
 fn grow(values: &mut LatticeField, wanted: &FxHashMap<Node, f32>, first: Vec<Entry>) {
     let mut open = BinaryHeap::from(first);
     while let Some((_, Reverse(node))) = open.pop() {
         let value = wanted[&node];
-        if (values.values[node as usize] < 0.0) == (value < 0.0) {
+        if (values.values[node] < 0.0) == (value < 0.0) {
             continue;
         }
         let Some(around) = around(values, node) else { continue };
-        let is_inside = |k: &usize| values.values[around[*k] as usize] < 0.0;
-        if !is_simple((0..14).filter(is_inside).fold(0, |set, k| set | 1 << k)) {
-            continue;
+        let is_inside = |k: &usize| values.values[around[*k]] < 0.0;
+        if is_simple((0..14).filter(is_inside).fold(0, |set, k| set | 1 << k)) {
+            values.values[node] = value;
+            open.extend(entries(wanted, around));
         }
-        values.values[node as usize] = value;
-        open.extend(around.iter().filter_map(|&next| Some(entry(next, *wanted.get(&next)?))));
     }
 }
 
 /// The nodes around one, if all are known.
 fn around(values: &LatticeField, node: Node) -> Option<[Node; 14]> {
-    let (block, local) = ((node / BLOCK_NODES as u64) as usize, (node % BLOCK_NODES as u64) as i32);
     let mut found = [0; 14];
     for (found, step) in found.iter_mut().zip(LINK.0) {
-        let at: [i32; 3] = std::array::from_fn(|a| (local >> (3 * a) & 7) + step[a]);
-        let other = values.blocks.neighbors[block][neighbor_code(at.map(|c| c >> 3))];
-        let place = (at[0] & 7 | (at[1] & 7) << 3 | (at[2] & 7) << 6) as usize;
-        if other == NONE || !mask_get(&values.known[other as usize], place) {
+        let next = stepped(values, node, step)?;
+        if !mask_get(&values.known[next / BLOCK_NODES], next % BLOCK_NODES) {
             return None;
         }
-        *found = u64::from(other) * BLOCK_NODES as u64 + place as u64;
+        *found = next;
     }
     Some(found)
 }
