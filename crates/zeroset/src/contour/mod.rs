@@ -51,8 +51,8 @@ mod sharp;
 pub mod simplicial;
 mod split;
 mod tetrahedra;
-mod wedges;
 mod triangulate;
+mod wedges;
 
 #[cfg(test)]
 mod tests;

@@ -9,7 +9,10 @@ use crate::domain::BLOCK_NODES;
 use crate::field::{Field, LatticeField};
 use crate::vec3::{self, Vec3};
 
-/// Where the field changes sides twice along an edge of the lattice, from one sheet to another, the end that is nearer to them changes sides, with the value of
+/// Sheets whose unit normals have at most this product go together to an acute wedge.
+const ACUTE: f64 = -0.1;
+
+/// Where the field changes sides twice along an edge of the lattice, from one sheet to another and through an acute wedge, the end that is nearer to them changes sides, with the value of
 /// the sheet beyond.
 pub(super) fn thicken(values: &mut LatticeField, field: &dyn Field, sheets: &[u32]) {
     let of_block = |b: usize| {
@@ -30,12 +33,7 @@ pub(super) fn thicken(values: &mut LatticeField, field: &dyn Field, sheets: &[u3
 }
 
 /// The nodes that change sides for the edges that go forward from a node, with their new values.
-fn changes(
-    values: &LatticeField,
-    field: &dyn Field,
-    sheets: &[u32],
-    node: Node,
-) -> impl Iterator<Item = (Node, f32)> {
+fn changes(values: &LatticeField, field: &dyn Field, sheets: &[u32], node: Node) -> impl Iterator<Item = (Node, f32)> {
     let own = sheets[node];
     let edges = if own == FAR { 1..1 } else { 1..8 };
     let is_outside = values.values[node] >= 0.0;
@@ -53,8 +51,13 @@ fn changes(
 
 /// The end of an edge that is nearer to what lies between two sheets, and the value that this end gets; `None` where nothing does.
 fn crossing(field: &dyn Field, sheets: [u32; 2], ends: [Vec3; 2], is_outside: bool) -> Option<(usize, f64)> {
-    let at = |sheet: u32| ends.map(|p| field.on_sheet(sheet, p).0);
-    let ([own_near, own_far], [beyond_near, beyond_far]) = (at(sheets[0]), at(sheets[1]));
+    let at = |sheet: u32| ends.map(|p| field.on_sheet(sheet, p));
+    let ([(own_near, own_normal), (own_far, _)], [(beyond_near, beyond_normal), (beyond_far, _)]) =
+        (at(sheets[0]), at(sheets[1]));
+    let lengths = vec3::norm(own_normal) * vec3::norm(beyond_normal);
+    if vec3::dot(own_normal, beyond_normal) > ACUTE * lengths {
+        return None;
+    }
     let enter = own_near / (own_near - own_far);
     let leave = beyond_near / (beyond_near - beyond_far);
     if !(0.0 < enter && enter < leave && leave < 1.0) {
