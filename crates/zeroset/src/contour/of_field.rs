@@ -73,7 +73,10 @@ pub(crate) const SNAP: f64 = 0.05;
 /// Space is halved as long as bounds leave it open whether the surface passes, so none of it is missed that the lattice can see. Vertices lie on
 /// the sheets of the field, and mesh edges along the lines and corners in which they meet, each found by Newton's method.
 ///
-/// Not guaranteed: what is thinner than a cell, the tip of a wedge of less than about 30 degrees, say, comes out ragged, with holes and crumbs.
+/// Walls and gaps between two sheets that are 1.5 cells thick are kept. What is thinner there, the tip of a wedge, say, has no handles and
+/// crumbs, but may end a little before its line, or be parted.
+///
+/// Not guaranteed: what is thinner than a cell within one sheet, as of a closed mesh or a fitted model, may have holes and fall to pieces.
 ///
 /// Positions are those of the field. Closed where the field's own extent is used, or the box holds the surface.
 ///
@@ -142,7 +145,7 @@ pub(crate) fn lattice_around([low, high]: [[f64; 3]; 2], cell: f64) -> Result<La
     first.over(low.map(|c| c - MARGIN * cell), high.map(|c| c + MARGIN * cell))
 }
 
-/// The values of a field at the nodes around its surface, blunt where sheets meet at small angles, and the number of cubes looked at to find it.
+/// The values of a field at the nodes around its surface, mended where sheets are near, and the number of cubes looked at to find it.
 pub(crate) fn sampled(
     field: &dyn Field,
     lattice: Lattice,

@@ -3,6 +3,10 @@
 use crate::field::Field;
 use crate::vec3::Vec3;
 
+/// Steps of a line to a cell, where the surface may be near.
+pub(super) const STEPS: f64 = 2.0;
+/// Lines along either side of a tile, which are looked at together.
+pub(super) const TILE: usize = 8;
 /// Halvings of an interval that holds a root.
 const HALVINGS: usize = 40;
 

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::columns::{Column, spans};
+use super::columns::{Column, STEPS, TILE, spans};
 use super::domain::Local;
 use super::{ModelError, Solid};
 use crate::monitor::{Monitor, Steps};
@@ -23,10 +23,6 @@ pub struct Heights {
 
 /// More pixels than this are a mistake.
 const MOST_PIXELS: f64 = 4e9;
-/// Steps of a line to a cell, where the surface may be near.
-const STEPS: f64 = 2.0;
-/// Pixels along either side of a tile, which are looked at together.
-const TILE: usize = 8;
 
 /// The height of the highest surface at the middle of each pixel: a digital surface model. Pixels are squares of side `cell`, at multiples of it; `None` is a cell of
 /// the model.

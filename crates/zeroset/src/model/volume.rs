@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::columns::{Column, spans};
+use super::columns::{Column, STEPS, TILE, spans};
 use super::domain::{Local, checked, is_finite};
 use super::keep::Keep;
 use super::{ModelError, Solid};
@@ -44,10 +44,6 @@ pub struct CutAndFill {
 
 /// Lines to a cell.
 const LINES: f64 = 2.0;
-/// Lines along either side of a tile, which are measured together.
-const TILE: usize = 8;
-/// Steps of a line to a cell, where the surface may be near.
-const STEPS: f64 = 2.0;
 /// No more lines than this along one side.
 const MOST_LINES: f64 = 2e5;
 

@@ -196,6 +196,59 @@ fn two_boxes_at_random_angles() {
     }
 }
 
+/// A brick turned about x, y and z by degrees, and moved.
+fn turned_by(half: Vec3, degrees: Vec3, middle: Vec3) -> Any {
+    let mut placement = Placement::default();
+    for (axis, angle) in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].into_iter().zip(degrees) {
+        placement = placement.turned(axis, angle.to_radians(), [0.0; 3]).unwrap();
+    }
+    let brick: Any = Arc::new(Cuboid::new(half.map(|h| -h), half).unwrap());
+    Arc::new(Placed::new(brick, placement.moved(middle).unwrap()))
+}
+
+#[test]
+fn walls_that_taper_to_nothing_have_no_handles() {
+    // Angles, and from exact meshes (manifold3d) the genus of each piece, the greatest first, and the volume.
+    let cases: [(Vec3, Vec3, &[u64], f64); 2] = [
+        (
+            [-10.983215349600158, -54.56697673170658, -54.14907471273983],
+            [59.90113380780858, 18.28429339055853, -31.858775799621128],
+            &[1, 0],
+            1.947687539813416,
+        ),
+        (
+            [-7.806293732982958, 56.902343191110646, 47.72131297302586],
+            [41.30772451304891, -12.911440279826621, -0.8372377521908874],
+            &[0],
+            1.8595256575007821,
+        ),
+    ];
+    for (first, second, genus, volume) in cases {
+        let base = turned_by([1.0, 0.8, 0.6], first, [0.0; 3]);
+        let field = Difference::new(base, turned_by([0.5, 0.5, 1.4], second, [0.1, 0.05, 0.0]));
+        let (mesh, report) = contour_field(&field, &FieldContourParams { cell: 0.02, bounds: None }, &()).unwrap();
+        let t = topology(&mesh).unwrap();
+        assert!(t.closed && report.intersections == 0, "{report:?} {t:?}");
+        let found: Vec<u64> = t.components.iter().map(|component| component.genus.unwrap()).collect();
+        assert_eq!(found, genus, "{t:?}");
+        assert!((t.volume.unwrap() / volume - 1.0).abs() < 1e-4, "{t:?}");
+    }
+}
+
+#[test]
+fn walls_of_two_cells_keep_their_handle() {
+    // All of this pipe of twelve sides is thinner than what is taken off on the way.
+    let prism = |radius: f64, height: f64| {
+        let corner = |k: u32| (f64::from(k) * PI / 6.0).sin_cos();
+        let ring = (0..12).map(corner).map(|(sin, cos)| [radius * cos, radius * sin]).collect();
+        Arc::new(Prism::new(&[ring], [-height, height]).unwrap())
+    };
+    let (cell, apothem) = (0.05, (PI / 12.0).cos());
+    let inner = 1.0 - 2.0 * cell / apothem;
+    let pipe = Difference::new(prism(1.0, 0.5), prism(inner, 2.0));
+    extracted(&pipe, cell, 1, 3.0 - 3.0 * inner * inner);
+}
+
 #[test]
 fn eight_boxes() {
     // Overlapping bricks around a hole; the faces of neighbours meet at 45 degrees or more.

@@ -6,8 +6,9 @@
 //!
 //! # How
 //! 1. [`thicken`](thicken::thicken): where an edge of the lattice goes through such a thin part, its nearer end changes sides, so that the part shows.
-//! 2. [`open`](open::open): between sheets, nodes that no cube of their side holds change sides. What is left is thick, and so is its topology.
-//! 3. [`regrow`](regrow::regrow): they change back, the surest first, unless they are thin and alter the topology.
+//! 2. [`open`](open::open): between sheets, nodes that no cube of their side holds change sides: a small cube, or in acute wedges a larger one. What is left there is
+//!    thick, and so is its topology.
+//! 3. [`regrow`](regrow::regrow): those in acute wedges change back, the surest first, unless they are thin and alter the topology.
 //!
 //! # Source
 //! Openings: G. Matheron, Random sets and integral geometry, 1975. Growth by simple points: G. Bertrand, Simple points, topological numbers
@@ -21,6 +22,9 @@ mod thicken;
 use crate::domain::{BLOCK_NODES, NONE, neighbor_code};
 use crate::field::{Field, LatticeField};
 
+/// Sheets whose unit normals have at most this product go together to an acute wedge: of 50 degrees at most.
+const ACUTE: f64 = -0.65;
+
 /// A node, by its block and its place there: `512 block + local`.
 type Node = usize;
 
@@ -31,7 +35,7 @@ pub(super) fn mend(values: &mut LatticeField, field: &dyn Field) {
     }
     let sheets = sheets::sheets(values, field);
     thicken::thicken(values, field, &sheets);
-    let changed = open::open(values, &sheets);
+    let changed = open::open(values, field, &sheets);
     regrow::regrow(values, &changed);
 }
 

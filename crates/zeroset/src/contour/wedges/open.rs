@@ -3,33 +3,68 @@
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
-use super::Node;
-use super::sheets::between;
+use super::sheets::{FAR, between, position};
+use super::{ACUTE, Node, stepped};
 use crate::domain::{BLOCK_NODES, Blocks, Mask, NONE, mask_get, neighbor_code, shift};
-use crate::field::LatticeField;
+use crate::field::{Field, LatticeField};
+use crate::vec3;
 
-/// Nodes along a side of the cubes, one of which must hold a node.
-const SIDE: usize = 4;
+/// Nodes along a side of the cubes, one of which must hold a node ...
+const SIDE: usize = 2;
+/// ... and in acute wedges.
+const SIDE_IN_ACUTE: usize = 4;
+/// Sheets whose unit normals have at most this product are the two sides of a wall or a gap, and no wedge: 6 degrees.
+const PARALLEL: f64 = -0.9945;
 /// The value of a node that changed sides, in cells.
 const SLIGHT: f32 = 0.1;
 
-/// Changes the sides of nodes between sheets that no cube of their side holds: first those inside, then those outside. Returns the values that they had.
-pub(super) fn open(values: &mut LatticeField, sheets: &[u32]) -> FxHashMap<Node, f32> {
+/// Changes the sides of nodes between sheets that no cube of their side holds: first those inside, then those outside. Returns the values that those in acute wedges had.
+pub(super) fn open(values: &mut LatticeField, field: &dyn Field, sheets: &[u32]) -> FxHashMap<Node, f32> {
     let mut changed = FxHashMap::default();
     let slight = SLIGHT * values.lattice.spacing as f32;
     let (between, within) = (between(values, sheets), surrounded(values));
     for inside in [true, false] {
-        let lonely = lonely(values, inside);
-        for (b, lonely) in lonely.iter().enumerate() {
-            let found: Mask = std::array::from_fn(|z| lonely[z] & between[b][z] & within[b][z]);
-            for local in (0..BLOCK_NODES).filter(|&local| found != [0; 8] && mask_get(&found, local)) {
+        let [lonely, in_acute] = [SIDE, SIDE_IN_ACUTE].map(|side| lonely(values, inside, side));
+        // Each node that changes sides, and whether it is in an acute wedge.
+        let of_block = |b: usize| {
+            let found: Mask = std::array::from_fn(|z| in_acute[b][z] & between[b][z] & within[b][z]);
+            let is_found = |local: &usize| found != [0; 8] && mask_get(&found, *local);
+            let change = |local: usize| {
                 let node = b * BLOCK_NODES + local;
+                let product = least_product(values, field, sheets, node);
+                let is_acute = product < ACUTE;
+                (product > PARALLEL && (is_acute || mask_get(&lonely[b], local))).then_some((node, is_acute))
+            };
+            (0..BLOCK_NODES).filter(is_found).filter_map(change).collect()
+        };
+        let found: Vec<Vec<(Node, bool)>> = (0..values.blocks.len()).into_par_iter().map(of_block).collect();
+        for (node, is_acute) in found.into_iter().flatten() {
+            if is_acute {
                 changed.entry(node).or_insert(values.values[node]);
-                values.values[node] = if inside { slight } else { -slight };
             }
+            values.values[node] = if inside { slight } else { -slight };
         }
     }
     changed
+}
+
+/// The least product of the unit normals of two sheets near a node: how far they face each other.
+fn least_product(values: &LatticeField, field: &dyn Field, sheets: &[u32], node: Node) -> f64 {
+    let mut near = vec![sheets[node]];
+    for far in [1, 2] {
+        for code in 0..27 {
+            let step = [code % 3, code / 3 % 3, code / 9].map(|s| far * (s - 1));
+            let sheet = stepped(values, node, step).map_or(FAR, |next| sheets[next]);
+            if !near.contains(&sheet) {
+                near.push(sheet);
+            }
+        }
+    }
+    let p = position(values, node);
+    let normal = |&sheet: &u32| vec3::normalized(field.on_sheet(sheet, p).1);
+    let normals: Vec<_> = near.iter().filter(|&&sheet| sheet != FAR).filter_map(normal).collect();
+    let products = normals.iter().flat_map(|&a| normals.iter().map(move |&b| vec3::dot(a, b)));
+    products.fold(1.0, f64::min)
 }
 
 /// The nodes all of whose neighbours are known.
@@ -43,8 +78,8 @@ fn surrounded(values: &LatticeField) -> Vec<Mask> {
     within
 }
 
-/// The known nodes of a side that no cube of nodes of that side holds; unknown nodes are of either side.
-fn lonely(values: &LatticeField, inside: bool) -> Vec<Mask> {
+/// The known nodes of a side that no cube of that side with so many nodes along an edge holds; unknown nodes are of either side.
+fn lonely(values: &LatticeField, inside: bool, length: usize) -> Vec<Mask> {
     let mut side = values.inside();
     side.par_iter_mut().zip(&values.known).for_each(|(side, known)| {
         for z in 0..8 {
@@ -54,10 +89,10 @@ fn lonely(values: &LatticeField, inside: bool) -> Vec<Mask> {
     });
     // First nodes of whole cubes, and then all nodes of these.
     let mut cubes = side.clone();
-    for axis in (0..3).flat_map(|axis| [axis; SIDE - 1]) {
+    for axis in (0..3).flat_map(|axis| vec![axis; length - 1]) {
         cubes = joined(&values.blocks, &cubes, axis, true, u64::MAX, |own, next| own & next);
     }
-    for axis in (0..3).flat_map(|axis| [axis; SIDE - 1]) {
+    for axis in (0..3).flat_map(|axis| vec![axis; length - 1]) {
         cubes = joined(&values.blocks, &cubes, axis, false, u64::MAX, |own, next| own | next);
     }
     let rest = side.into_par_iter().zip(cubes).zip(&values.known);

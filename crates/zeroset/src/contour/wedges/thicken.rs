@@ -4,13 +4,10 @@ use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 use super::sheets::{FAR, position};
-use super::{Node, stepped};
+use super::{ACUTE, Node, stepped};
 use crate::domain::BLOCK_NODES;
 use crate::field::{Field, LatticeField};
 use crate::vec3::{self, Vec3};
-
-/// Sheets whose unit normals have at most this product go together to an acute wedge.
-const ACUTE: f64 = -0.1;
 
 /// Where the field changes sides twice along an edge of the lattice, from one sheet to another and through an acute wedge, the end that is nearer to them changes sides, with the value of
 /// the sheet beyond.
