@@ -73,8 +73,8 @@ pub(crate) const SNAP: f64 = 0.05;
 /// Space is halved as long as bounds leave it open whether the surface passes, so none of it is missed that the lattice can see. Vertices lie on
 /// the sheets of the field, and mesh edges along the lines and corners in which they meet, each found by Newton's method.
 ///
-/// Walls and gaps between two sheets that are 1.5 cells thick are kept. What is thinner there, the tip of a wedge, say, has no handles and
-/// crumbs, but may end a little before its line, or be parted.
+/// Walls and gaps of two cells between parallel sheets, and of 2.5 cells between others, are kept. What is thinner, the tip of a wedge, say, may end a little before its
+/// line, or be parted.
 ///
 /// Not guaranteed: what is thinner than a cell within one sheet, as of a closed mesh or a fitted model, may have holes and fall to pieces.
 ///
