@@ -7,10 +7,11 @@ use super::clip::clip_at_box;
 use super::dual::contour;
 use super::sharp::{SharpReport, sharpen_field};
 use super::wedges::mend;
-use crate::domain::{BLOCK_NODES, Blocks, Lattice, LatticeError, Mask, block_key, block_of_key, dilate_box, mask_get};
+use crate::domain::{BLOCK_NODES, Blocks, Lattice, LatticeError, Mask, block_key, dilate_box, mask_get};
 use crate::field::{Field, LatticeField};
 use crate::mesh::Mesh;
 use crate::monitor::{Cancelled, Monitor, check};
+use crate::vec3::Vec3;
 
 /// Where and how finely a field is made into a mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -145,6 +146,13 @@ pub(crate) fn lattice_around([low, high]: [[f64; 3]; 2], cell: f64) -> Result<La
     first.over(low.map(|c| c - MARGIN * cell), high.map(|c| c + MARGIN * cell))
 }
 
+/// Where a node of a block of the finest level is.
+pub(super) fn position(lattice: &Lattice, blocks: &Blocks, block: usize, local: usize) -> Vec3 {
+    let step = [local & 7, local >> 3 & 7, local >> 6];
+    let node = std::array::from_fn(|a| f64::from(8 * blocks.coordinates[block][a] + step[a] as u32));
+    lattice.position(lattice.finest, node)
+}
+
 /// The values of a field at the nodes around its surface, mended where sheets are near, and the number of cubes looked at to find it.
 pub(crate) fn sampled(
     field: &dyn Field,
@@ -179,15 +187,12 @@ pub(crate) fn sampled(
     let blocks = Blocks::new(keys, extent);
     let known = dilate_box(&blocks, &masks);
     let values = (0..blocks.len()).into_par_iter().flat_map_iter(|b| {
-        let first = block_of_key(blocks.keys[b]).map(|c| 8 * c);
-        let (known, lattice) = (&known[b], &lattice);
+        let (known, lattice, blocks) = (&known[b], &lattice, &blocks);
         (0..BLOCK_NODES).map(move |local| {
             if !mask_get(known, local) {
                 return 0.0;
             }
-            let step = [local & 7, local >> 3 & 7, local >> 6];
-            let node = std::array::from_fn(|a| f64::from(first[a] + step[a] as u32));
-            field.value(lattice.position(lattice.finest, node)) as f32
+            field.value(position(lattice, blocks, b, local)) as f32
         })
     });
     let values: Vec<f32> = values.collect();

@@ -1,5 +1,7 @@
 //! Takes off what is thin.
 
+use std::iter::repeat_n;
+
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
@@ -24,7 +26,8 @@ pub(super) fn open(values: &mut LatticeField, field: &dyn Field, sheets: &[u32])
     let slight = SLIGHT * values.lattice.spacing as f32;
     let (between, within) = (between(values, sheets), surrounded(values));
     for inside in [true, false] {
-        let [lonely, in_acute] = [SIDE, SIDE_IN_ACUTE].map(|side| lonely(values, inside, side));
+        let own = of_side(values, inside);
+        let [lonely, in_acute] = [SIDE, SIDE_IN_ACUTE].map(|length| lonely(values, &own, length));
         // Each node that changes sides, and whether it is in an acute wedge.
         let of_block = |b: usize| {
             let found: Mask = std::array::from_fn(|z| in_acute[b][z] & between[b][z] & within[b][z]);
@@ -78,8 +81,8 @@ fn surrounded(values: &LatticeField) -> Vec<Mask> {
     within
 }
 
-/// The known nodes of a side that no cube of that side with so many nodes along an edge holds; unknown nodes are of either side.
-fn lonely(values: &LatticeField, inside: bool, length: usize) -> Vec<Mask> {
+/// The nodes of a side; unknown nodes are of either.
+fn of_side(values: &LatticeField, inside: bool) -> Vec<Mask> {
     let mut side = values.inside();
     side.par_iter_mut().zip(&values.known).for_each(|(side, known)| {
         for z in 0..8 {
@@ -87,15 +90,21 @@ fn lonely(values: &LatticeField, inside: bool, length: usize) -> Vec<Mask> {
             side[z] = own | !known[z];
         }
     });
+    side
+}
+
+/// The known nodes of a side that no cube of that side with so many nodes along an edge holds.
+fn lonely(values: &LatticeField, side: &[Mask], length: usize) -> Vec<Mask> {
+    let steps = || (0..3).flat_map(|axis| repeat_n(axis, length - 1));
     // First nodes of whole cubes, and then all nodes of these.
-    let mut cubes = side.clone();
-    for axis in (0..3).flat_map(|axis| vec![axis; length - 1]) {
+    let mut cubes = side.to_vec();
+    for axis in steps() {
         cubes = joined(&values.blocks, &cubes, axis, true, u64::MAX, |own, next| own & next);
     }
-    for axis in (0..3).flat_map(|axis| vec![axis; length - 1]) {
+    for axis in steps() {
         cubes = joined(&values.blocks, &cubes, axis, false, u64::MAX, |own, next| own | next);
     }
-    let rest = side.into_par_iter().zip(cubes).zip(&values.known);
+    let rest = side.par_iter().zip(cubes).zip(&values.known);
     rest.map(|((side, held), known)| std::array::from_fn(|z| side[z] & !held[z] & known[z])).collect()
 }
 

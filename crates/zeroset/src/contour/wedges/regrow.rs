@@ -65,9 +65,12 @@ pub(super) fn regrow(values: &mut LatticeField, wanted: &FxHashMap<Node, f32>) {
         if value.abs() < own_piece {
             break;
         }
-        let Some(around) = around(values, node) else { continue };
         let is_same = |node: Node| (values.values[node] < 0.0) == (value < 0.0);
-        if is_same(node) || value.abs() < sure && around.iter().any(|&next| is_same(next)) {
+        if is_same(node) {
+            continue;
+        }
+        let Some(around) = around(values, node) else { continue };
+        if value.abs() < sure && around.iter().any(|&next| is_same(next)) {
             continue;
         }
         values.values[node] = value;

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::{Node, stepped};
+use crate::contour::of_field;
 use crate::domain::{BLOCK_NODES, Mask, dilate_box, mask_get, mask_set};
 use crate::field::{Field, LatticeField};
 use crate::vec3::Vec3;
@@ -25,11 +26,7 @@ pub(super) fn sheets(values: &LatticeField, field: &dyn Field) -> Vec<u32> {
 
 /// Where a node is.
 pub(super) fn position(values: &LatticeField, node: Node) -> Vec3 {
-    let (block, local) = (node / BLOCK_NODES, node % BLOCK_NODES);
-    let first = values.blocks.coordinates[block].map(|c| 8 * c);
-    let step = [local & 7, local >> 3 & 7, local >> 6];
-    let node = std::array::from_fn(|a| f64::from(first[a] + step[a] as u32));
-    values.lattice.position(values.lattice.finest, node)
+    of_field::position(&values.lattice, &values.blocks, node / BLOCK_NODES, node % BLOCK_NODES)
 }
 
 /// The nodes within two steps of where a sheet gives way to another.
