@@ -125,6 +125,44 @@ fn bounds(mesh: &Mesh) -> ([f64; 3], [f64; 3]) {
     })
 }
 
+/// Points of an upright cylinder with its two ends.
+fn cylinder_points(radius: f64, height: f64, noise: f64) -> Cloud {
+    let mut rng = Pcg64Mcg::seed_from_u64(7);
+    let mut normal = || noise * (0..12).map(|_| rng.random::<f64>()).sum::<f64>() - 6.0 * noise;
+    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+    let (ends, side) = (8_000, 24_000);
+    let at_end = (0..ends).map(|i| {
+        let (share, angle) = ((f64::from(i) + 0.5) / f64::from(ends), std::f64::consts::TAU * golden * f64::from(i));
+        let (r, z) = (radius * share.sqrt(), if i % 2 == 0 { 0.0 } else { height });
+        [r * angle.cos(), r * angle.sin(), z + normal()]
+    });
+    let mut positions: Vec<[f64; 3]> = at_end.collect();
+    positions.extend((0..side).map(|i| {
+        let (share, angle) = ((f64::from(i) + 0.5) / f64::from(side), std::f64::consts::TAU * golden * f64::from(i));
+        let r = radius + normal();
+        [r * angle.cos(), r * angle.sin(), height * share]
+    }));
+    Cloud::from_world(positions)
+}
+
+#[test]
+fn a_curved_surface_keeps_its_shape_beside_a_cut() {
+    let (radius, cell) = (0.3, 0.025);
+    let cloud = cylinder_points(radius, 0.75, 0.0015);
+    let base = Solid::Fitted(fitted(&cloud, &params(Quality::Normal, cell)));
+    // The box stands out by two cells at the least.
+    let top = Solid::Cuboid { corners: [[-0.345, -0.345, 0.6], [0.345, 0.345, 1.2]] };
+    let (whole, _) = closed(&base);
+    let (joined, _) = closed(&Solid::Union(vec![base, top]));
+    let off = |mesh: &Mesh| {
+        let beside = mesh.vertices.iter().filter(|v| (0.4..0.5999).contains(&v[2]));
+        let off: Vec<f64> = beside.map(|v| (v[0].hypot(v[1]) - radius).abs()).filter(|off| *off < cell).collect();
+        ((off.iter().map(|off| off * off).sum::<f64>() / off.len() as f64).sqrt(), off.into_iter().fold(0.0, f64::max))
+    };
+    let (before, after) = (off(&whole), off(&joined));
+    assert!(after.0 < 1.5 * before.0 && after.1 < 0.06 * cell, "{before:?} {after:?}");
+}
+
 #[test]
 fn a_fitted_body_can_be_taken_out_of_a_block_and_put_elsewhere() {
     let cloud = Scene::new(SceneKind::Torus, 4).points(30_000, 0.0005, 4);

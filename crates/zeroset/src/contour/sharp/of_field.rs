@@ -69,8 +69,7 @@ impl OnSheets {
     /// `numbers` are the field's sheets at the vertices.
     fn new(mesh: &Mesh, field: &dyn Field, numbers: &[u32], known: &[Option<Known>], cell: f64) -> Self {
         let operands = operands(field, numbers, known);
-        let stars = operands.iter().any(|&operand| operand != 0).then(|| Stars::new(mesh));
-        let beside = stars.as_ref().map(|stars| beside_others(&operands, stars));
+        let beside = operands.iter().any(|&operand| operand != 0).then(|| beside_others(&operands, &Stars::new(mesh)));
         // Where the mesh is blunt, beside another operand, it is away from the sheet.
         let is_beside = |v: usize| beside.as_ref().is_some_and(|beside| beside[v]);
         let foot = |v: usize| {
@@ -86,12 +85,14 @@ impl OnSheets {
             Sheet { plane: Some(number), is_flat: field.is_flat(number), flat }
         };
         let mut of: Vec<Sheet> = (0..numbers.len()).into_par_iter().map(own).collect();
-        if let Some(stars) = stars {
+        if beside.is_some() {
+            let apart = apart(mesh, &feet, &operands);
+            let stars = Stars::new(&apart);
             // Planes that points show are numbered after the field's sheets.
             let mut next = field.sheets();
             for (tag, known) in known.iter().enumerate() {
                 let Some(known) = known else { continue };
-                let shown = super::sheets::sheets(mesh, &stars, known);
+                let shown = super::sheets::sheets(&apart, &stars, known);
                 let is_of_it = |v: &usize| operands[*v] == tag as u32 + 1;
                 of.par_iter_mut().enumerate().filter(|(v, _)| is_of_it(v)).for_each(|(v, sheet)| {
                     let shown = shown.of(v as u32);
@@ -140,6 +141,13 @@ fn beside_others(operands: &[u32], stars: &Stars) -> Vec<bool> {
         beside = (0..operands.len()).into_par_iter().map(grown).collect();
     }
     beside
+}
+
+/// The surfaces of the operands, each for itself: points tell nothing of the lines in which they meet.
+fn apart(mesh: &Mesh, feet: &[Option<Vec3>], operands: &[u32]) -> Mesh {
+    let vertices = mesh.vertices.iter().zip(feet).map(|(&v, foot)| foot.unwrap_or(v)).collect();
+    let is_of_one = |t: &&[u32; 3]| t.iter().all(|&v| operands[v as usize] == operands[t[0] as usize]);
+    Mesh { vertices, triangles: mesh.triangles.iter().filter(is_of_one).copied().collect(), ..Mesh::default() }
 }
 
 /// Puts new vertices where their sheets meet, which tangent planes told to first order only.
