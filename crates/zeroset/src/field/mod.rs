@@ -127,7 +127,7 @@ pub trait Field: Send + Sync + std::fmt::Debug {
         (self.value(p), self.gradient(p))
     }
 
-    /// Both at some positions, which may take less time than one by one. `found` is as long as `points`.
+    /// Both at some positions, to the same bits, which may take less time than one by one. `found` is as long as `points`.
     fn evaluate(&self, points: &[[f64; 3]], found: &mut [(f64, [f64; 3])]) {
         for (p, found) in points.iter().zip(found) {
             *found = self.value_and_gradient(*p);

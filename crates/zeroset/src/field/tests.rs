@@ -164,6 +164,20 @@ fn bounds_hold_every_value() {
 }
 
 #[test]
+fn values_are_the_same_one_by_one_and_all_at_once() {
+    let mut rng = Pcg64Mcg::seed_from_u64(6);
+    for field in every_field() {
+        let points: Vec<[f64; 3]> = (0..3000).map(|_| position(&mut rng, 1.5)).collect();
+        let mut found = vec![(f64::NAN, [f64::NAN; 3]); points.len()];
+        field.evaluate(&points, &mut found);
+        for (&p, found) in points.iter().zip(found) {
+            assert_eq!(found, (field.value(p), field.gradient(p)), "{p:?} of {field:?}");
+            assert_eq!(found, field.value_and_gradient(p), "{p:?} of {field:?}");
+        }
+    }
+}
+
+#[test]
 fn gradients_are_central_differences_away_from_creases() {
     let (mut rng, step) = (Pcg64Mcg::seed_from_u64(2), 1e-6);
     for field in every_field() {

@@ -69,6 +69,20 @@ impl Field for Choice {
         (value, self.all[own].gradient(p))
     }
 
+    fn evaluate(&self, points: &[[f64; 3]], found: &mut [(f64, [f64; 3])]) {
+        let Some((first, others)) = self.all.split_first() else { return };
+        first.evaluate(points, found);
+        let mut of_other = vec![(0.0, [0.0; 3]); points.len()];
+        for field in others {
+            field.evaluate(points, &mut of_other);
+            for (best, other) in found.iter_mut().zip(&of_other) {
+                if self.sign * other.0 < self.sign * best.0 {
+                    *best = *other;
+                }
+            }
+        }
+    }
+
     fn metric(&self) -> Metric {
         self.all.iter().map(|field| field.metric()).fold(Metric::Bound, Metric::max)
     }
@@ -192,6 +206,13 @@ impl Field for Complement {
     fn value_and_gradient(&self, p: [f64; 3]) -> (f64, [f64; 3]) {
         let (value, gradient) = self.0.value_and_gradient(p);
         (-value, vec3::scale(gradient, -1.0))
+    }
+
+    fn evaluate(&self, points: &[[f64; 3]], found: &mut [(f64, [f64; 3])]) {
+        self.0.evaluate(points, found);
+        for (value, gradient) in found {
+            (*value, *gradient) = (-*value, vec3::scale(*gradient, -1.0));
+        }
     }
 
     fn metric(&self) -> Metric {

@@ -163,8 +163,7 @@ impl Field for LatticeSolid {
     fn value(&self, p: [f64; 3]) -> f64 {
         let place = self.place(p);
         let (values, axes) = self.path(self.block(place.cell), &place);
-        let steps = (0..3).map(|i| place.fraction[axes[i]] * (values[i + 1] - values[i]));
-        values[0] + steps.sum::<f64>()
+        (0..3).fold(values[0], |value, i| value + place.fraction[axes[i]] * (values[i + 1] - values[i]))
     }
 
     fn gradient(&self, p: [f64; 3]) -> [f64; 3] {
