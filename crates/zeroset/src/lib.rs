@@ -4,7 +4,7 @@
 //! no normals and no orientation. F is negative inside and positive outside.
 //!
 //! The rooms follow the data: [`cloud`] -> [`domain`] -> [`basis`] -> [`fit`] -> [`field`] -> [`contour`] -> [`mesh`]; [`reconstruct`]
-//! walks through all of them in one call. [`feature`] finds planes, edges and corners, and [`constraint`] holds those that the user knows. The remaining
+//! walks through all of them in one call, and [`tile`] does so piece by piece. [`feature`] finds planes, edges and corners, and [`constraint`] holds those that the user knows. The remaining
 //! rooms serve all of these: [`spatial`] answers nearest-neighbour questions, [`sample`] makes scenes with a known truth, and
 //! [`monitor`] carries progress out and a wish to stop in.
 
@@ -22,5 +22,6 @@ pub mod monitor;
 pub mod reconstruct;
 pub mod sample;
 pub mod spatial;
+pub mod tile;
 
 mod vec3;

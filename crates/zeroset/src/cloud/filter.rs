@@ -62,6 +62,35 @@ pub fn retain(cloud: &mut Cloud, keep: &[bool]) -> usize {
 }
 
 impl Attributes {
+    /// Adds further values to those of `count` points. Lists stay where both have them; where there are no points yet, those of the other are taken.
+    pub(crate) fn append(&mut self, other: Self, count: usize) {
+        if count == 0 {
+            *self = other;
+            return;
+        }
+        fn join<T>(own: &mut Option<Vec<T>>, other: Option<Vec<T>>) {
+            match (own.as_mut(), other) {
+                (Some(own), Some(other)) => own.extend(other),
+                _ => *own = None,
+            }
+        }
+        join(&mut self.colors, other.colors);
+        join(&mut self.intensities, other.intensities);
+        join(&mut self.classes, other.classes);
+    }
+
+    /// The values of some entries.
+    pub(crate) fn picked(&self, entries: &[u32]) -> Self {
+        fn pick<T: Copy>(values: Option<&Vec<T>>, entries: &[u32]) -> Option<Vec<T>> {
+            values.map(|values| entries.iter().map(|&i| values[i as usize]).collect())
+        }
+        Self {
+            colors: pick(self.colors.as_ref(), entries),
+            intensities: pick(self.intensities.as_ref(), entries),
+            classes: pick(self.classes.as_ref(), entries),
+        }
+    }
+
     /// Keeps the values that `keep` says.
     pub fn retain(&mut self, keep: &[bool]) {
         if let Some(colors) = &mut self.colors {

@@ -67,6 +67,13 @@ impl Cloud {
         self.points.is_empty()
     }
 
+    /// Adds the points of another cloud with the same offset. Values stay where both clouds have them.
+    pub fn append(&mut self, other: Self) {
+        let count = self.len();
+        self.points.extend_from_slice(&other.points);
+        self.attributes.append(other.attributes, count);
+    }
+
     /// World position of point `i`.
     #[must_use]
     pub fn world(&self, i: usize) -> [f64; 3] {

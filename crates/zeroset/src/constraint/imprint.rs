@@ -60,8 +60,14 @@ struct Crossing {
     foot: Vec3,
 }
 
-/// Puts vertices in along lines, each given by its segments; returns how many lie on lines.
-pub(crate) fn imprint(mesh: &mut Mesh, lines: &[Vec<[Vec3; 2]>], cell: f64) -> usize {
+/// Puts vertices in along lines, each given by its segments; returns how many lie on lines. Vertices for which `is_held` says so stay, and so do the
+/// edges between them.
+pub(crate) fn imprint(
+    mesh: &mut Mesh,
+    lines: &[Vec<[Vec3; 2]>],
+    cell: f64,
+    is_held: impl Fn(u32) -> bool + Sync,
+) -> usize {
     let curtains = curtains(mesh, lines, cell);
     if curtains.is_empty() {
         return 0;
@@ -73,6 +79,9 @@ pub(crate) fn imprint(mesh: &mut Mesh, lines: &[Vec<[Vec3; 2]>], cell: f64) -> u
     let crossings: Vec<Option<Crossing>> = all
         .par_iter()
         .map(|edge| {
+            if is_held(edge.low) && is_held(edge.high) {
+                return None;
+            }
             let [p, q] = [edge.low, edge.high].map(|v| mesh.vertices[v as usize]);
             let near = tree.closest_within(vec3::lerp(p, q, 0.5), REACH * cell + 0.5 * vec3::distance(p, q))?;
             let curtain = &curtains[near.triangle];
@@ -89,8 +98,8 @@ pub(crate) fn imprint(mesh: &mut Mesh, lines: &[Vec<[Vec3; 2]>], cell: f64) -> u
     let mut moves = Moves::new(mesh);
     for (edge, crossing) in all.iter().zip(&crossings) {
         match crossing {
-            Some(c) if c.share < AT_END => moves.offer(edge.low, *c),
-            Some(c) if c.share > 1.0 - AT_END => moves.offer(edge.high, *c),
+            Some(c) if c.share < AT_END && !is_held(edge.low) => moves.offer(edge.low, *c),
+            Some(c) if c.share > 1.0 - AT_END && !is_held(edge.high) => moves.offer(edge.high, *c),
             _ => {}
         }
     }

@@ -31,7 +31,7 @@ mod tests;
 pub(crate) use imprint::imprint;
 pub(crate) use local::{Local, LocalPolygon};
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::fit::normalized::{PolygonError, Triangulated, triangulate_polygon};
 use crate::vec3::{self, Vec3};
@@ -158,7 +158,7 @@ impl Constraints {
 }
 
 /// How much of the user's lines and polygons takes part.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct ConstraintPlan {
     /// Lines given.
     pub lines: usize,

@@ -88,7 +88,7 @@ fn mesh_edges_run_along_lines() {
     let mut mesh = roof(0.5, 12);
     let before = topology(&mesh).unwrap();
     let line = [vec![[[0.0, -4.0, 0.0], [0.0, 4.0, 0.0]]], vec![[[-3.0, -3.0, -1.5], [-3.0, 3.0, -1.5]]]];
-    let on_lines = imprint(&mut mesh, &line, 1.0);
+    let on_lines = imprint(&mut mesh, &line, 1.0, |_| false);
     let after = topology(&mesh).unwrap();
     assert!(on_lines > 30, "{on_lines}");
     assert_eq!((after.nonmanifold_edges, after.inconsistent_edges, after.degenerate_triangles), (0, 0, 0));
@@ -109,6 +109,6 @@ fn mesh_edges_run_along_lines() {
 fn lines_far_from_the_mesh_leave_it_alone() {
     let mut mesh = Scene::new(SceneKind::Box, 0).truth;
     let before = mesh.clone();
-    assert_eq!(imprint(&mut mesh, &[vec![[[0.1, 0.1, 3.0], [0.9, 0.1, 3.0]]]], 0.1), 0);
+    assert_eq!(imprint(&mut mesh, &[vec![[[0.1, 0.1, 3.0], [0.9, 0.1, 3.0]]]], 0.1, |_| false), 0);
     assert_eq!(mesh, before);
 }

@@ -127,6 +127,15 @@ impl<'a> LatticeCells<'a> {
         }
         Self { field, tetrahedra }
     }
+
+    /// The cell of a vertex, and which of its tetrahedra.
+    pub(super) fn place(&self, vertex: usize) -> ([u32; 3], usize) {
+        let (block, code) = self.tetrahedra[vertex];
+        let local = u32::from(code >> 3);
+        let corner = self.field.blocks.coordinates[block as usize];
+        let inside = [local & 7, local >> 3 & 7, local >> 6];
+        (std::array::from_fn(|a| 8 * corner[a] + inside[a]), usize::from(code & 7))
+    }
 }
 
 impl Cells for LatticeCells<'_> {

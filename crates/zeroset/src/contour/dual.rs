@@ -1,6 +1,6 @@
 //! One vertex in each active tetrahedron of a lattice, one polygon around each crossed edge.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicU8, Ordering};
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -8,6 +8,7 @@ use serde::Serialize;
 use super::active::{ActiveBlock, LatticeCells, activate, cell_in_block, corner_values};
 use super::placement::{Placement, PlacementReport, Sector, place, sectors};
 use super::rings::RINGS;
+use super::seam::{OwnNodes, Seam, key_of};
 use super::split::split_fans;
 use super::triangulate::triangulate;
 use crate::domain::{NONE, neighbor_code};
@@ -56,6 +57,33 @@ pub fn contour_with(
     params: &ContourParams,
     keep: impl Fn([f64; 3]) -> bool + Sync,
 ) -> (Mesh, ContourReport) {
+    let (mesh, _, report) = extract(field, params, None, keep);
+    (mesh, report)
+}
+
+/// Extracts a part of the zero set as [`contour`] does, together with what is known around it.
+pub(crate) fn contour_part(
+    field: &LatticeField,
+    own: OwnNodes<'_>,
+    keep: impl Fn([f64; 3]) -> bool + Sync,
+) -> (Mesh, Seam, ContourReport) {
+    extract(field, &ContourParams::default(), Some(own), keep)
+}
+
+/// A vertex of this kind loses a polygon,
+const RIM: u8 = 1;
+/// has polygons of the part's own, whether they stay or not,
+const OWN: u8 = 2;
+/// and has others.
+const OTHER: u8 = 4;
+
+/// Without own nodes all polygons are the part's own, and there is no seam.
+fn extract(
+    field: &LatticeField,
+    params: &ContourParams,
+    own: Option<OwnNodes<'_>>,
+    keep: impl Fn([f64; 3]) -> bool + Sync,
+) -> (Mesh, Seam, ContourReport) {
     let active: Vec<Option<ActiveBlock>> =
         (0..field.blocks.len()).into_par_iter().with_min_len(8).map(|b| activate(field, b)).collect();
     let mut first_vertex = Vec::with_capacity(active.len());
@@ -65,8 +93,8 @@ pub fn contour_with(
         total += block.as_ref().map_or(0, |a| a.count);
     }
     let mut vertices = place_vertices(field, &active, total);
-    let rim: Vec<AtomicBool> = (0..total).into_par_iter().map(|_| AtomicBool::new(false)).collect();
-    let rings = Rings { field, active: &active, first_vertex: &first_vertex, rim: &rim };
+    let marks: Vec<AtomicU8> = (0..total).into_par_iter().map(|_| AtomicU8::new(0)).collect();
+    let rings = Rings { field, active: &active, first_vertex: &first_vertex, marks: &marks, own };
     let placement = match &params.placement {
         Placement::MeanOfCrossings => None,
         Placement::LeastCurvature(least) => {
@@ -74,24 +102,35 @@ pub fn contour_with(
             Some(place(&mut vertices, &rings.sectors(), &cells, least))
         }
     };
-    let mut triangles = Vec::new();
+    let (mut triangles, mut seam) = (Vec::new(), Seam::default());
     let mut trimmed_polygons = 0;
     for first in (0..active.len()).step_by(BLOCKS_AT_ONCE) {
-        let parts: Vec<(Vec<[u32; 3]>, usize)> = (first..active.len().min(first + BLOCKS_AT_ONCE))
+        let parts: Vec<Polygons> = (first..active.len().min(first + BLOCKS_AT_ONCE))
             .into_par_iter()
             .with_min_len(8)
             .map(|b| rings.polygons(b, &vertices, &keep))
             .collect();
-        for (part, trimmed) in parts {
-            triangles.extend_from_slice(&part);
-            trimmed_polygons += trimmed;
+        for part in parts {
+            triangles.extend_from_slice(&part.triangles);
+            seam.own.extend_from_slice(&part.own);
+            trimmed_polygons += part.trimmed;
         }
     }
-    drop((active, first_vertex));
-    let rim: Vec<bool> = rim.into_iter().map(AtomicBool::into_inner).collect();
+    drop(first_vertex);
+    let marks: Vec<u8> = marks.into_iter().map(AtomicU8::into_inner).collect();
     let mut mesh = Mesh { vertices, triangles, ..Mesh::default() };
-    let split_vertices = split_fans(&mut mesh, &rim);
-    (mesh, ContourReport { active_tetrahedra: total as usize, trimmed_polygons, split_vertices, placement })
+    let rim: Vec<bool> = marks.iter().map(|mark| mark & RIM != 0).collect();
+    let (split_vertices, old) = split_fans(&mut mesh, &rim);
+    if own.is_some() {
+        let cells = LatticeCells::new(field, &active);
+        let is_held = |&(_, old): &(usize, &u32)| marks[*old as usize] & (OWN | OTHER) == OWN | OTHER;
+        let key = |(new, old): (usize, &u32)| {
+            let (cell, t) = cells.place(*old as usize);
+            (new as u32, key_of(cell, t))
+        };
+        seam.keys = old.iter().enumerate().filter(is_held).map(key).collect();
+    }
+    (mesh, seam, ContourReport { active_tetrahedra: total as usize, trimmed_polygons, split_vertices, placement })
 }
 
 fn place_vertices(field: &LatticeField, active: &[Option<ActiveBlock>], total: u32) -> Vec<[f64; 3]> {
@@ -125,12 +164,26 @@ struct Rings<'a> {
     field: &'a LatticeField,
     active: &'a [Option<ActiveBlock>],
     first_vertex: &'a [u32],
-    /// Set for each vertex that loses a polygon.
-    rim: &'a [AtomicBool],
+    /// What is known of each vertex.
+    marks: &'a [AtomicU8],
+    /// Whose polygons are the part's own; `None`: all are.
+    own: Option<OwnNodes<'a>>,
+}
+
+/// What is made of the edges of a block.
+#[derive(Default)]
+struct Polygons {
+    triangles: Vec<[u32; 3]>,
+    /// For each triangle whether it is the part's own; empty without own nodes.
+    own: Vec<bool>,
+    /// Polygons left out by the trim.
+    trimmed: usize,
 }
 
 /// A lattice edge along which F changes sign.
 struct Crossing {
+    /// Its first node.
+    node: [u32; 3],
     /// The axes that it runs along, as bits.
     subset: usize,
     /// Whether F < 0 at its first node.
@@ -164,7 +217,8 @@ impl Rings<'_> {
                 }
                 let s = f64::from(here) / (f64::from(here) - f64::from(there));
                 let place = std::array::from_fn(|a| corner[a] + origin[a] as f64 + s * step[a] as f64);
-                visit(&Crossing { subset, outward: here < 0.0, place, ring: self.ring(b, origin, subset) });
+                let node = std::array::from_fn(|a| 8 * self.field.blocks.coordinates[b][a] + origin[a] as u32);
+                visit(&Crossing { node, subset, outward: here < 0.0, place, ring: self.ring(b, origin, subset) });
             }
         }
     }
@@ -187,24 +241,32 @@ impl Rings<'_> {
         parts.concat()
     }
 
-    /// The triangles around the crossed edges that begin at the nodes of block `b`, and the number of polygons trimmed.
-    fn polygons(
-        &self,
-        b: usize,
-        vertices: &[Vec3],
-        keep: &(impl Fn([f64; 3]) -> bool + Sync),
-    ) -> (Vec<[u32; 3]>, usize) {
+    /// What is made of the crossed edges that begin at the nodes of block `b`.
+    fn polygons(&self, b: usize, vertices: &[Vec3], keep: &(impl Fn([f64; 3]) -> bool + Sync)) -> Polygons {
         let lattice = &self.field.lattice;
-        let (mut triangles, mut trimmed) = (Vec::new(), 0);
+        let mut made = Polygons::default();
         self.visit(b, |crossing| {
+            let is_own = self.own.is_none_or(|own| own([crossing.node[0], crossing.node[1]]));
+            let mut mark = 0;
+            if self.own.is_some() {
+                mark = if is_own { OWN } else { OTHER };
+            }
             if crossing.is_whole() && keep(lattice.position(lattice.finest, crossing.place)) {
-                emit_polygon(crossing, vertices, &mut triangles);
+                emit_polygon(crossing, vertices, &mut made.triangles);
+                if self.own.is_some() {
+                    made.own.resize(made.triangles.len(), is_own);
+                }
             } else {
-                trimmed += usize::from(crossing.is_whole());
-                crossing.ring.as_slice().iter().for_each(|&id| self.rim[id as usize].store(true, Ordering::Relaxed));
+                made.trimmed += usize::from(crossing.is_whole());
+                mark |= RIM;
+            }
+            if mark != 0 {
+                crossing.ring.as_slice().iter().for_each(|&id| {
+                    self.marks[id as usize].fetch_or(mark, Ordering::Relaxed);
+                });
             }
         });
-        (triangles, trimmed)
+        made
     }
 
     /// The vertices around an edge; fewer than its tetrahedra where the ring is cut by the rim of what is known.

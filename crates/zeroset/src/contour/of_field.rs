@@ -132,7 +132,7 @@ pub fn contour_field(
     let SharpReport { on_creases, at_corners, folded, taken_back, intersections, .. } =
         sharpen_field(&mut mesh, field, &[], params.cell);
     if params.bounds.is_some() {
-        clip_at_box(&mut mesh, [low, high], 0..3, SNAP * params.cell);
+        clip_at_box(&mut mesh, [low, high], 0..3, SNAP * params.cell, None);
     }
     if mesh.triangles.is_empty() {
         return Err(FieldContourError::NoSurface);

@@ -34,8 +34,9 @@ impl ColumnOutline {
         let side = [high[0] - low[0] + 2.0 * radius, high[1] - low[1] + 2.0 * radius];
         let cell = cell.max((side[0] * side[1] / MAX_COLUMNS).sqrt()).max(side[0].max(side[1]) / MOST_ALONG);
         let margin = (radius / cell).ceil() + 2.0;
-        let low = low.map(|l| l - margin * cell);
-        let size: [usize; 2] = std::array::from_fn(|a| ((high[a] - low[a]) / cell + margin + 2.0) as usize);
+        // Columns are the same whatever part of the points is seen.
+        let low = low.map(|l| ((l / cell).floor() - margin) * cell);
+        let size: [usize; 2] = std::array::from_fn(|a| ((high[a] - low[a]) / cell + margin + 3.0) as usize);
         let mut occupied = vec![false; size[0] * size[1]];
         for p in points {
             let [x, y] = [0, 1].map(|a| ((p[a] - low[a]) / cell) as usize);

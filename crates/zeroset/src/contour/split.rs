@@ -5,10 +5,10 @@ use rayon::prelude::*;
 use crate::mesh::Mesh;
 
 /// Splits each vertex in which several fans of triangles meet, one copy a fan, and drops unused vertices. Returns the number of
-/// copies made. Triangles keep their order; vertices are numbered by first use of the old numbers.
+/// copies made, and the number that each vertex had. Triangles keep their order; vertices keep theirs, copies next to each other.
 ///
 /// `rim` tells the vertices around which a polygon is missing: all others are one fan.
-pub(super) fn split_fans(mesh: &mut Mesh, rim: &[bool]) -> usize {
+pub(crate) fn split_fans(mesh: &mut Mesh, rim: &[bool]) -> (usize, Vec<u32>) {
     // Triangles around each vertex on the rim, star after star.
     let mut corners: Vec<(u32, u32)> = mesh
         .triangles
@@ -29,23 +29,23 @@ pub(super) fn split_fans(mesh: &mut Mesh, rim: &[bool]) -> usize {
 
     let mut used = vec![false; mesh.vertices.len()];
     mesh.triangles.iter().flatten().for_each(|&v| used[v as usize] = true);
-    let (mut number, mut vertices) = (vec![0_u32; used.len()], Vec::with_capacity(used.len()));
+    let (mut number, mut old) = (vec![0_u32; used.len()], Vec::with_capacity(used.len()));
     let mut next_copy = copies.iter().peekable();
     for v in (0..used.len()).filter(|&v| used[v]) {
-        number[v] = vertices.len() as u32;
-        vertices.push(mesh.vertices[v]);
+        number[v] = old.len() as u32;
+        old.push(v as u32);
         while next_copy.next_if(|copy| **copy as usize == v).is_some() {
-            vertices.push(mesh.vertices[v]);
+            old.push(v as u32);
         }
     }
-    mesh.vertices = vertices;
+    mesh.vertices = old.iter().map(|&v| mesh.vertices[v as usize]).collect();
     mesh.triangles.par_iter_mut().for_each(|corners| *corners = corners.map(|v| number[v as usize]));
     for (v, t, fan) in moved {
         for corner in mesh.triangles[t as usize].iter_mut().filter(|corner| **corner == number[v as usize]) {
             *corner += fan;
         }
     }
-    copies.len()
+    (copies.len(), old)
 }
 
 /// Numbers the fans of a star, given as its vertex with each of the triangles: triangles that share an edge at the vertex belong
@@ -97,7 +97,10 @@ mod tests {
             triangles: vec![[1, 2, 3], [1, 4, 5]],
             ..Mesh::default()
         };
-        assert_eq!(split_fans(&mut mesh, &[false, true, false, false, false, false]), 1);
+        assert_eq!(
+            split_fans(&mut mesh, &[false, true, false, false, false, false]),
+            (1, vec![0, 1, 1, 2, 3, 4, 5][1..].to_vec())
+        );
         assert_eq!(mesh.vertices.len(), 6);
         assert_ne!(mesh.triangles[0][0], mesh.triangles[1][0]);
         assert_eq!(mesh.vertices[mesh.triangles[1][0] as usize], [0.0; 3]);

@@ -90,7 +90,7 @@ pub fn contour_tetrahedra(
         triangulate(&corners, polygon.normal, |t| triangles.push(t.map(|k| polygon.vertices[k])));
     }
     let mut surface = Mesh { vertices, triangles, ..Mesh::default() };
-    let split_vertices = split_fans(&mut surface, &rim);
+    let (split_vertices, _) = split_fans(&mut surface, &rim);
     let active_tetrahedra = active.simplices.len();
     Ok((surface, ContourReport { active_tetrahedra, trimmed_polygons: 0, split_vertices, placement }))
 }

@@ -130,6 +130,17 @@ impl Lattice {
         Ok(Self { origin, spacing, finest, blocks, fraction_bits: (32 - node_bits).min(20) })
     }
 
+    /// The same lattices without those finer than a level.
+    pub(crate) fn up_to(&self, level: u32) -> Self {
+        let removed = self.finest - level;
+        Self {
+            spacing: self.spacing_at(level),
+            finest: level,
+            fraction_bits: (self.fraction_bits + removed).min(20),
+            ..self.clone()
+        }
+    }
+
     /// Distance between neighbouring nodes of a level.
     #[must_use]
     pub fn spacing_at(&self, level: u32) -> f64 {

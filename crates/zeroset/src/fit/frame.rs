@@ -1,13 +1,13 @@
 //! Which way is up, and the frame in which F is fitted.
 
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::cascade::Scene;
 use crate::field::Placement;
 
 /// The axis of the file that points to the sky.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Up {
     /// +x.

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::Fitted;
 use crate::cloud::Attributes;
@@ -16,7 +16,7 @@ use crate::spatial::PointTree;
 const CHUNK: usize = 1 << 14;
 
 /// Which values of the points the vertices get.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum AttributeChoice {
     /// None.

@@ -139,7 +139,7 @@ impl Fitted {
     }
 
     /// The user's lines and polygons.
-    pub(super) fn held(&self) -> Local {
+    pub(crate) fn held(&self) -> Local {
         let lines = self.parts.lines.clone();
         let polygons = match self.parts.polygons.as_slice() {
             [] => Vec::new(),

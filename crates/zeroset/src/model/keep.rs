@@ -10,6 +10,9 @@ use crate::contour::ColumnOutline;
 use crate::monitor::{Monitor, Steps};
 use crate::spatial::PointTree;
 
+/// Polygons for each node that is known, about.
+const POLYGONS_A_NODE: f64 = 0.36;
+
 /// Counts the polygons of the extraction for a monitor.
 pub(super) struct Watch<'a> {
     steps: Steps<'a>,
@@ -21,9 +24,10 @@ impl<'a> Watch<'a> {
     /// Polygons between two looks at the monitor.
     const STRIDE: usize = 1 << 14;
 
-    /// `polygons` is about how many there will be.
-    pub(super) fn new(monitor: &'a dyn Monitor, shares: Range<f64>, polygons: usize) -> Self {
-        let steps = Steps::new(monitor, shares, polygons);
+    /// Of the surface of a fitted model.
+    pub(super) fn of(fitted: &Fitted, monitor: &'a dyn Monitor, shares: Range<f64>) -> Self {
+        let nodes = fitted.lattice().known_nodes() as f64;
+        let steps = Steps::new(monitor, shares, (POLYGONS_A_NODE * nodes) as usize);
         Self { steps, polygons: AtomicUsize::new(0), cancelled: AtomicBool::new(false) }
     }
 

@@ -40,6 +40,7 @@ pub use heights::{Heights, heights};
 pub use slices::{Cuts, Slices, slices};
 pub use solid::Solid;
 pub use surface::{MeshParams, MeshReport, MeshSeconds, mesh};
+pub(crate) use surface::{Piece, piece};
 pub use volume::{CutAndFill, Volume, VolumeParams, cut_and_fill, volume};
 
 use crate::contour::FieldContourError;

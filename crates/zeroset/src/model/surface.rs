@@ -14,10 +14,10 @@ use super::solid::Leaf;
 use super::{AttributeChoice, Fitted, ModelError, Solid};
 use crate::constraint::{ConstraintReport, imprint};
 use crate::contour::{
-    ContourReport, FieldContourError, Known, SNAP, SharpReport, clip_at_box, contour, lattice_around, sampled, sharpen,
-    sharpen_field,
+    ColumnOutline, ContourReport, FieldContourError, Known, OwnNodes, Raster, SNAP, Seam, SharpReport, clip_at_box,
+    contour, contour_part, lattice_around, sampled, sharpen, sharpen_field,
 };
-use crate::field::Field;
+use crate::field::{Field, LatticeField};
 use crate::mesh::{DroppedComponents, Mesh, SimplifyParams, SimplifyReport, drop_small_components, simplify};
 use crate::monitor::{Monitor, Part, check};
 use crate::vec3::{self, Vec3};
@@ -75,8 +75,6 @@ pub struct MeshSeconds {
 const BEFORE_SIMPLIFY: f64 = 0.5;
 /// The share of the whole that is done after the extraction, after the sharpening, and before the values.
 const AFTER: [f64; 3] = [0.25, 0.9, 0.97];
-/// Polygons for each node that is known, about.
-const POLYGONS_A_NODE: f64 = 0.36;
 
 /// Makes a mesh of a solid. Positions are world positions less an offset that the mesh tells.
 ///
@@ -140,47 +138,106 @@ fn report(cell: f64) -> MeshReport {
 
 /// The surface of a fitted model as it is.
 fn of_fitted(fitted: &Arc<Fitted>, monitor: &dyn Monitor) -> Result<Surface, ModelError> {
-    let (parts, frame, cell) = (fitted.parts(), fitted.frame(), fitted.cell());
-    let mut report = report(cell);
+    let mut report = report(fitted.cell());
     monitor.stage("extracting the surface");
     let start = Instant::now();
     let keep = Keep::new(fitted);
     check(monitor)?;
-    let nodes = fitted.lattice().known_nodes() as f64;
-    let watch = Watch::new(monitor, 0.0..AFTER[0], (POLYGONS_A_NODE * nodes) as usize);
+    let watch = Watch::of(fitted, monitor, 0.0..AFTER[0]);
     let (mut mesh, contour) =
         contour(fitted.lattice(), |p| watch.goes_on() && keep.as_ref().is_none_or(|keep| keep.contains(p)));
     drop(keep);
     check(monitor)?;
-    if parts.trim.is_some() && fitted.is_ground() {
-        cut_at_points(&mut mesh, fitted, |p| frame.enter(p), cell);
-    }
+    report.contour = contour;
+    end(&mut mesh, fitted, None);
     if mesh.triangles.is_empty() {
         return Err(FieldContourError::NoSurface.into());
     }
-    mesh.vertices.par_iter_mut().for_each(|v| *v = frame.leave(*v));
-    mesh.world_from_local = parts.world_from_local;
-    report.contour = contour;
     report.seconds.contour = start.elapsed().as_secs_f64();
-
     let start = Instant::now();
-    let held = fitted.held();
-    let mut on_lines = 0;
     if let Some(evidence) = fitted.evidence([0.0; 3], &Default::default(), false) {
         monitor.stage("making edges sharp");
-        report.sharp = Some(sharpen(&mut mesh, &evidence.known(cell)));
-        on_lines = imprint(&mut mesh, &held.lines, cell);
+        report.sharp = Some(sharpen(&mut mesh, &evidence.known(fitted.cell()), None));
     }
+    let is_sharp = report.sharp.is_some();
+    report.constraints = on_constraints(&mut mesh, fitted, is_sharp, |_| false);
     check(monitor)?;
-    report.constraints = held.measure(&mesh, SAMPLES_REL * cell, on_lines);
     report.seconds.sharpen = start.elapsed().as_secs_f64();
     Ok(Surface { mesh, report, base: Some(Arc::clone(fitted)) })
 }
 
-/// Cuts open ground where the points end, seen from above. `enter` leads from the points to the mesh.
-fn cut_at_points(mesh: &mut Mesh, fitted: &Fitted, enter: impl Fn(Vec3) -> Vec3 + Sync, cell: f64) {
-    let bounds = crate::domain::bounds(fitted.parts().points.iter().map(|p| enter(p.map(f64::from))));
-    clip_at_box(mesh, bounds.into(), 0..2, SNAP * cell);
+/// Which part of a fitted surface is extracted, of one that is fitted in parts.
+pub(crate) struct Piece<'a> {
+    /// What is the part's own.
+    pub(crate) own: OwnNodes<'a>,
+    /// Where the surface is kept, in the frame of the fit; `None`: everywhere.
+    pub(crate) outline: Option<&'a ColumnOutline>,
+    /// The raster of all parts.
+    pub(crate) raster: Raster,
+}
+
+/// A part of the surface of a fitted model, of which F is `field`, with values, and the vertices that it shares with its neighbours. It may be empty.
+pub(crate) fn piece(
+    fitted: &Fitted,
+    field: &LatticeField,
+    piece: &Piece<'_>,
+    attributes: AttributeChoice,
+    monitor: &dyn Monitor,
+) -> Result<(Mesh, Seam, MeshReport), ModelError> {
+    let mut report = report(fitted.cell());
+    monitor.stage("extracting the surface");
+    let start = Instant::now();
+    let watch = Watch::of(fitted, monitor, 0.0..AFTER[0]);
+    let keep = |p: Vec3| watch.goes_on() && piece.outline.is_none_or(|outline| outline.contains(p[0], p[1]));
+    let (mut mesh, mut seam, contour) = contour_part(field, piece.own, keep);
+    check(monitor)?;
+    report.contour = contour;
+    end(&mut mesh, fitted, Some(&mut seam));
+    report.seconds.contour = start.elapsed().as_secs_f64();
+    let start = Instant::now();
+    match fitted.evidence([0.0; 3], &Default::default(), false) {
+        Some(evidence) if !mesh.triangles.is_empty() => {
+            monitor.stage("making edges sharp");
+            let known = evidence.known(fitted.cell());
+            report.sharp = Some(sharpen(&mut mesh, &known, Some((&mut seam, piece.raster))));
+        }
+        _ => mesh.vertices.par_iter_mut().for_each(|v| *v = piece.raster.nearest(*v)),
+    }
+    check(monitor)?;
+    seam.keep_own(&mut mesh);
+    if !mesh.triangles.is_empty() {
+        let is_sharp = report.sharp.is_some();
+        report.constraints = on_constraints(&mut mesh, fitted, is_sharp, |v| seam.keys.contains_key(&v));
+    }
+    report.seconds.sharpen = start.elapsed().as_secs_f64();
+    let start = Instant::now();
+    transfer(fitted, &mut mesh, attributes, monitor, AFTER[2]..1.0)?;
+    report.seconds.attributes = start.elapsed().as_secs_f64();
+    (report.vertices, report.triangles) = (mesh.vertices.len(), mesh.triangles.len());
+    Ok((mesh, seam, report))
+}
+
+/// Ends a mesh of a fitted model where its ground ends, and leads it out of the frame of the fit.
+fn end(mesh: &mut Mesh, fitted: &Fitted, seam: Option<&mut Seam>) {
+    let frame = fitted.frame();
+    if fitted.parts().trim.is_some() && fitted.is_ground() {
+        let bounds = crate::domain::bounds(fitted.parts().bounds.into_iter().map(|corner| frame.enter(corner)));
+        clip_at_box(mesh, bounds.into(), 0..2, SNAP * fitted.cell(), seam);
+    }
+    mesh.vertices.par_iter_mut().for_each(|v| *v = frame.leave(*v));
+    mesh.world_from_local = fitted.parts().world_from_local;
+}
+
+/// Lays edges along the user's lines where the mesh is sharp, and measures how near it comes to all that the user knows.
+fn on_constraints(
+    mesh: &mut Mesh,
+    fitted: &Fitted,
+    is_sharp: bool,
+    is_held: impl Fn(u32) -> bool + Sync,
+) -> Option<ConstraintReport> {
+    let (held, cell) = (fitted.held(), fitted.cell());
+    let on_lines = if is_sharp { imprint(mesh, &held.lines, cell, is_held) } else { 0 };
+    held.measure(mesh, SAMPLES_REL * cell, on_lines)
 }
 
 /// The surface of what is made of operands.
@@ -206,7 +263,7 @@ fn of_solid(solid: &Solid, params: &MeshParams, monitor: &dyn Monitor) -> Result
     let (mut mesh, contour) = contour(&values, |p| keep.as_ref().is_none_or(|keep| keep.contains(p)));
     drop((values, keep));
     if let Some(ground) = local.ground() {
-        clip_at_box(&mut mesh, ground, 0..2, SNAP * cell);
+        clip_at_box(&mut mesh, ground, 0..2, SNAP * cell, None);
     }
     if mesh.triangles.is_empty() {
         return Err(FieldContourError::NoSurface.into());
@@ -224,7 +281,7 @@ fn of_solid(solid: &Solid, params: &MeshParams, monitor: &dyn Monitor) -> Result
         evidence.iter().map(|evidence| evidence.as_ref().map(|evidence| evidence.known(cell))).collect();
     report.sharp = Some(sharpen_field(&mut mesh, &*local.field, &known, cell));
     if let Some(bounds) = params.bounds {
-        clip_at_box(&mut mesh, bounds.map(|corner| vec3::sub(corner, local.origin)), 0..3, SNAP * cell);
+        clip_at_box(&mut mesh, bounds.map(|corner| vec3::sub(corner, local.origin)), 0..3, SNAP * cell, None);
         if mesh.triangles.is_empty() {
             return Err(FieldContourError::NoSurface.into());
         }

@@ -24,9 +24,11 @@ mod structure;
 
 pub use crate::fit::Up;
 pub use crate::model::AttributeChoice;
+pub(crate) use plan::{LEAST_POINTS, Measured};
 pub use plan::{MinComponent, Plan, PlanReport, ReconstructParams, Resolution, Trim, plan};
 pub use quality::Quality;
 pub use run::{FittedReport, ReconstructReport, StageSeconds};
+pub(crate) use run::{Shaped, shape};
 pub use scene::SceneEvidence;
 pub use structure::StructureReport;
 
@@ -87,6 +89,22 @@ pub enum ReconstructError {
     /// The fit found no surface at all.
     #[error("no surface was found; give a finer --resolution or another --scene")]
     NoSurface,
+    /// Tiles of something that is not open ground.
+    #[error(
+        "tiles are for ground seen from above, and this looks like an object; give --scene terrain or airborne, or no --tile"
+    )]
+    TilesOfBody,
+    /// Tiles of a surface without an end.
+    #[error("tiles end where the points do, so --trim off is not possible; give a length, or no --tile")]
+    TilesWithoutTrim,
+    /// Tiles narrower than their halos.
+    #[error("tiles of {side} are narrow for this resolution; give --tile {least:.1} or more, or a finer --resolution")]
+    NarrowTiles {
+        /// The side asked for.
+        side: f64,
+        /// The least that is possible.
+        least: f64,
+    },
     /// A length that is not positive.
     #[error("a {name} of {value} is not possible; give a positive length")]
     Length {

@@ -1,7 +1,7 @@
 //! Every default resolved against the cloud.
 
 use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::scene::SceneEvidence;
 use super::{Quality, ReconstructError, Up};
@@ -121,7 +121,7 @@ const NOISE_REL: f64 = 0.25;
 /// The least and the most automatic weight of the data term.
 const SCREENING: [f64; 2] = [1.0, 16.0];
 /// Fewer points never make a surface.
-const LEAST_POINTS: usize = 8;
+pub(crate) const LEAST_POINTS: usize = 8;
 /// Peak bytes of a whole run for each cell of the finest level that the surface crosses, in a draft and else, and for each point.
 ///
 /// Measured is the peak resident set of `zeroset reconstruct` on two threads. The points alone (3 M, cells of 5 spacings) take
@@ -135,7 +135,7 @@ const BYTES_A_POINT: f64 = 110.0;
 const ASTRAY: f64 = 1e6;
 
 /// What a reconstruction will do, before it is done.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PlanReport {
     /// Points used.
     pub points: usize,
@@ -194,6 +194,145 @@ pub struct Plan<'a> {
     pub(super) seconds: f64,
 }
 
+/// What is known of points before anything is decided.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Measured {
+    /// How many there are.
+    pub(crate) points: usize,
+    /// Lowest and highest corner of their box, in local coordinates.
+    pub(crate) bounds: [[f64; 3]; 2],
+    /// What to add to local coordinates.
+    pub(crate) world_from_local: [f64; 3],
+    pub(crate) spacing: f64,
+    /// Standard deviation across the surface.
+    pub(crate) noise: f64,
+    pub(crate) scene: Scene,
+    /// Why this scene.
+    pub(crate) scene_reason: String,
+}
+
+impl Measured {
+    /// Measures all points of a cloud. They must be finite.
+    pub(crate) fn of(cloud: &Cloud, params: &ReconstructParams) -> Result<Self, ReconstructError> {
+        if cloud.len() < LEAST_POINTS {
+            return Err(ReconstructError::TooFewPoints { found: cloud.len(), needed: LEAST_POINTS });
+        }
+        let upright: Vec<[f64; 3]> = cloud.points.iter().map(|&p| params.up.upright(p)).collect();
+        let tree = PointTree::new(&cloud.points);
+        let spacing =
+            Spacing::with_tree(cloud, &tree).ok_or(ReconstructError::Degenerate { shape: "in one place" })?.median;
+        let noise = noise(cloud, &tree).unwrap_or(0.0);
+        drop(tree);
+        let bounds: [[f64; 3]; 2] = crate::domain::bounds(cloud.points.iter().copied()).into();
+        let is_free = matches!(params.resolution, Resolution::Auto | Resolution::Spacings { .. });
+        if is_free && extent(bounds) > ASTRAY * spacing {
+            return Err(ReconstructError::Astray { extent: extent(bounds), spacing });
+        }
+        if on_one_line(&upright) {
+            return Err(ReconstructError::Degenerate { shape: "on one line" });
+        }
+        let (scene, scene_reason) = params
+            .scene
+            .map_or_else(|| SceneEvidence::of(&upright, spacing).verdict(), |scene| (scene, "asked for".to_owned()));
+        let world_from_local = cloud.world_from_local;
+        Ok(Self { points: cloud.len(), bounds, world_from_local, spacing, noise, scene, scene_reason })
+    }
+
+    /// The resolution that is asked for.
+    pub(crate) fn wanted(&self, params: &ReconstructParams) -> Result<f64, ReconstructError> {
+        Ok(match params.resolution {
+            Resolution::Auto => params.quality.resolution_rel() * RESOLUTION_REL * self.spacing,
+            Resolution::Spacings { terrain, body } => {
+                let value = if matches!(self.scene, Scene::Terrain | Scene::Airborne) { terrain } else { body };
+                if !(value.is_finite() && value > 0.0) {
+                    return Err(ReconstructError::Length { name: "resolution in spacings", value });
+                }
+                value * self.spacing
+            }
+            Resolution::Length(length) if length.is_finite() && length > 0.0 => length,
+            Resolution::Length(value) => return Err(ReconstructError::Length { name: "resolution", value }),
+            Resolution::Depth(depth) => {
+                let cells = 2.0_f64.powi(i32::try_from(depth).unwrap_or(i32::MAX));
+                (1.0 + 2.0 * FitParams::PADDING_REL) * extent(self.bounds) / cells
+            }
+        })
+    }
+
+    /// How to fit at a resolution.
+    pub(crate) fn fit_params(&self, params: &ReconstructParams, resolution: f64) -> FitParams {
+        let screening = params.screening.unwrap_or_else(|| screening_for(self.noise, resolution));
+        FitParams { screening, ..FitParams::new(self.scene, resolution) }
+    }
+
+    /// Cells that the surface crosses at a resolution, from the area that the points stand for.
+    pub(crate) fn surface_cells(&self, resolution: f64) -> usize {
+        (1.5 * self.points as f64 * (self.spacing / resolution).powi(2)).min(1e15) as usize
+    }
+
+    /// Everything resolved, for lattices of so many levels and points in so many cells of the finest.
+    pub(crate) fn report(
+        &self,
+        params: &ReconstructParams,
+        (resolution, wanted): (f64, f64),
+        levels: u32,
+        occupied_cells: usize,
+        known: &Local,
+    ) -> PlanReport {
+        let cells = occupied_cells.max(self.surface_cells(resolution));
+        let placed = self.points.saturating_add(known.count(SAMPLES_REL * resolution));
+        let screening = self.fit_params(params, resolution).screening;
+        PlanReport {
+            points: self.points,
+            bounds: self.bounds.map(|corner| std::array::from_fn(|a| corner[a] + self.world_from_local[a])),
+            spacing: self.spacing,
+            noise: self.noise,
+            scene: self.scene,
+            scene_reason: self.scene_reason.clone(),
+            up: params.up,
+            resolution,
+            wanted_resolution: (resolution > wanted).then_some(wanted),
+            levels,
+            occupied_cells,
+            expected_nodes: 14 * cells as u64,
+            expected_bytes: expected_bytes(params.quality, cells, placed) as u64,
+            trim: match (params.trim, self.scene) {
+                (Trim::Off, _) | (Trim::Auto, Scene::Object | Scene::Free) => None,
+                (Trim::Auto, Scene::Terrain | Scene::Airborne) => Some((TRIM_REL * self.spacing).max(8.0 * resolution)),
+                (Trim::Length(length), _) => Some(length),
+            },
+            screening,
+            quality: params.quality,
+            polish: params.quality.polish(screening, params.smoothness),
+            min_component: match (params.min_component, self.scene) {
+                (MinComponent::Off, _) | (MinComponent::Auto, Scene::Object | Scene::Free) => None,
+                (MinComponent::Auto, Scene::Terrain | Scene::Airborne) => Some(LEAST_TRIANGLES),
+                (MinComponent::Triangles(least), _) => Some(least),
+            },
+            simplify: params.simplify.clone(),
+            attributes: params.attributes,
+            constraints: (!known.is_empty()).then_some(known.plan),
+        }
+    }
+}
+
+impl ReconstructParams {
+    /// What can be told to be impossible without any point.
+    pub(crate) fn check(&self) -> Result<(), ReconstructError> {
+        match self.trim {
+            Trim::Length(value) if !(value.is_finite() && value > 0.0) => {
+                return Err(ReconstructError::Length { name: "trim", value });
+            }
+            Trim::Length(_) | Trim::Auto | Trim::Off => (),
+        }
+        Ok(self.simplify.as_ref().map_or(Ok(()), SimplifyParams::check)?)
+    }
+}
+
+/// The longest side of a box.
+fn extent([low, high]: [[f64; 3]; 2]) -> f64 {
+    (0..3).map(|a| high[a] - low[a]).fold(0.0, f64::max)
+}
+
 /// Resolves every default against the cloud. Points must be finite.
 ///
 /// # Errors
@@ -205,37 +344,10 @@ pub fn plan<'a>(
 ) -> Result<Plan<'a>, ReconstructError> {
     let start = std::time::Instant::now();
     monitor.stage("measuring the points");
-    if cloud.len() < LEAST_POINTS {
-        return Err(ReconstructError::TooFewPoints { found: cloud.len(), needed: LEAST_POINTS });
-    }
-    let upright: Vec<[f64; 3]> = cloud.points.iter().map(|&p| params.up.upright(p)).collect();
-    let tree = PointTree::new(&cloud.points);
-    let spacing =
-        Spacing::with_tree(cloud, &tree).ok_or(ReconstructError::Degenerate { shape: "in one place" })?.median;
-    let noise = noise(cloud, &tree).unwrap_or(0.0);
-    drop(tree);
-    let (low, high) = crate::domain::bounds(cloud.points.iter().copied());
-    let extent = (0..3).map(|a| high[a] - low[a]).fold(0.0, f64::max);
-    let is_free = matches!(params.resolution, Resolution::Auto | Resolution::Spacings { .. });
-    if is_free && extent > ASTRAY * spacing {
-        return Err(ReconstructError::Astray { extent, spacing });
-    }
-    if on_one_line(&upright) {
-        return Err(ReconstructError::Degenerate { shape: "on one line" });
-    }
-    let trim_length = match params.trim {
-        Trim::Length(value) if !(value.is_finite() && value > 0.0) => {
-            return Err(ReconstructError::Length { name: "trim", value });
-        }
-        Trim::Length(length) => Some(length),
-        Trim::Auto | Trim::Off => None,
-    };
-    params.simplify.as_ref().map_or(Ok(()), SimplifyParams::check)?;
+    params.check()?;
+    let measured = Measured::of(cloud, params)?;
     check(monitor)?;
-    let (scene, scene_reason) = params
-        .scene
-        .map_or_else(|| SceneEvidence::of(&upright, spacing).verdict(), |scene| (scene, "asked for".to_owned()));
-    let frame = Frame::new(params.up, scene);
+    let frame = Frame::new(params.up, measured.scene);
     let points: Vec<[f64; 3]> = cloud.points.par_iter().map(|&p| frame.enter(p)).collect();
     let known = Local::new(
         &params.constraints,
@@ -246,23 +358,7 @@ pub fn plan<'a>(
     if known.is_empty() && !params.constraints.is_empty() {
         return Err(ReconstructError::ConstraintsAstray);
     }
-    let screening = |resolution| params.screening.unwrap_or_else(|| screening_for(noise, resolution));
-    let fit = |resolution| FitParams { screening: screening(resolution), ..FitParams::new(scene, resolution) };
-    let wanted = match params.resolution {
-        Resolution::Auto => params.quality.resolution_rel() * RESOLUTION_REL * spacing,
-        Resolution::Spacings { terrain, body } => {
-            let value = if matches!(scene, Scene::Terrain | Scene::Airborne) { terrain } else { body };
-            if !(value.is_finite() && value > 0.0) {
-                return Err(ReconstructError::Length { name: "resolution in spacings", value });
-            }
-            value * spacing
-        }
-        Resolution::Length(length) if length.is_finite() && length > 0.0 => length,
-        Resolution::Length(value) => return Err(ReconstructError::Length { name: "resolution", value }),
-        Resolution::Depth(depth) => {
-            (1.0 + 2.0 * FitParams::PADDING_REL) * extent / 2.0_f64.powi(i32::try_from(depth).unwrap_or(i32::MAX))
-        }
-    };
+    let wanted = measured.wanted(params)?;
     monitor.stage("sorting the points");
     let over_budget = |resolution: f64, bytes: f64| ReconstructError::Memory {
         resolution,
@@ -270,18 +366,20 @@ pub fn plan<'a>(
         allowed_gb: params.memory as f64 / 1e9,
         possible: resolution * (bytes / params.memory as f64).sqrt(),
     };
+    let is_free = matches!(params.resolution, Resolution::Auto | Resolution::Spacings { .. });
     let mut resolution = wanted;
     let prepared = loop {
         // Before anything is sorted: the surface between the points is there however few cells hold one.
         let placed = cloud.len().saturating_add(known.count(SAMPLES_REL * resolution));
-        let least = expected_bytes(params.quality, surface_cells(cloud.len(), spacing, resolution), placed);
+        let least = expected_bytes(params.quality, measured.surface_cells(resolution), placed);
         let needed = if least > params.memory as f64 {
             least
         } else {
             let samples = known.samples(SAMPLES_REL * resolution);
-            let prepared = Prepared::with_samples(&points, &samples, &fit(resolution)).map_err(FitError::from)?;
+            let fit = measured.fit_params(params, resolution);
+            let prepared = Prepared::with_samples(&points, &samples, &fit).map_err(FitError::from)?;
             check(monitor)?;
-            let cells = prepared.occupied_cells().max(surface_cells(cloud.len(), spacing, resolution));
+            let cells = prepared.occupied_cells().max(measured.surface_cells(resolution));
             let needed = expected_bytes(params.quality, cells, placed);
             if needed <= params.memory as f64 {
                 break prepared;
@@ -289,57 +387,17 @@ pub fn plan<'a>(
             needed
         };
         let coarser = resolution * (needed / params.memory as f64).sqrt().max(1.05);
-        if !is_free || coarser > extent {
+        if !is_free || coarser > extent(measured.bounds) {
             return Err(over_budget(resolution, needed));
         }
         resolution = coarser;
     };
-    let trim = match (params.trim, scene) {
-        (Trim::Off, _) | (Trim::Auto, Scene::Object | Scene::Free) => None,
-        (Trim::Auto, Scene::Terrain | Scene::Airborne) => Some((TRIM_REL * spacing).max(8.0 * resolution)),
-        (Trim::Length(_), _) => trim_length,
-    };
-    let min_component = match (params.min_component, scene) {
-        (MinComponent::Off, _) | (MinComponent::Auto, Scene::Object | Scene::Free) => None,
-        (MinComponent::Auto, Scene::Terrain | Scene::Airborne) => Some(LEAST_TRIANGLES),
-        (MinComponent::Triangles(least), _) => Some(least),
-    };
-    let offset = cloud.world_from_local;
-    let occupied_cells = prepared.occupied_cells();
-    let cells = occupied_cells.max(surface_cells(cloud.len(), spacing, resolution));
-    let report = PlanReport {
-        points: cloud.len(),
-        bounds: [low, high].map(|corner| std::array::from_fn(|a| corner[a] + offset[a])),
-        spacing,
-        noise,
-        scene,
-        scene_reason,
-        up: params.up,
-        resolution,
-        wanted_resolution: (resolution > wanted).then_some(wanted),
-        levels: prepared.levels(),
-        occupied_cells,
-        expected_nodes: 14 * cells as u64,
-        expected_bytes: expected_bytes(params.quality, cells, cloud.len() + known.count(SAMPLES_REL * resolution))
-            as u64,
-        trim,
-        screening: screening(resolution),
-        quality: params.quality,
-        polish: params.quality.polish(screening(resolution), params.smoothness),
-        min_component,
-        simplify: params.simplify.clone(),
-        attributes: params.attributes,
-        constraints: (!known.is_empty()).then_some(known.plan),
-    };
+    let report = measured.report(params, (resolution, wanted), prepared.levels(), prepared.occupied_cells(), &known);
     Ok(Plan { report, cloud, prepared, known, seconds: start.elapsed().as_secs_f64() })
 }
 
-/// Cells that the surface crosses, from the area that the points stand for.
-fn surface_cells(points: usize, spacing: f64, resolution: f64) -> usize {
-    (1.5 * points as f64 * (spacing / resolution).powi(2)).min(1e15) as usize
-}
-
-fn expected_bytes(quality: Quality, cells: usize, points: usize) -> f64 {
+/// Peak bytes of a run.
+pub(super) fn expected_bytes(quality: Quality, cells: usize, points: usize) -> f64 {
     let a_cell = if quality == Quality::Draft { BYTES_A_DRAFT_CELL } else { BYTES_A_CELL };
     a_cell * cells as f64 + BYTES_A_POINT * points as f64
 }

@@ -1,11 +1,11 @@
 //! How much is done for the surface.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::fit::cascade::PolishParams;
 
 /// How much is done for the surface after the fit.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Quality {
     /// Nothing: the zero set of the cascade. The fastest look.

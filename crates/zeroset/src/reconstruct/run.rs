@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::structure::{Found, StructureReport};
 use super::{Plan, PlanReport, Quality, ReconstructError};
 use crate::cloud::Cloud;
-use crate::constraint::ConstraintReport;
+use crate::constraint::{ConstraintReport, Local};
 use crate::contour::{ContourReport, SharpReport};
 use crate::field::{LatticeField, Metric};
 use crate::fit::Frame;
@@ -128,57 +128,79 @@ impl Plan<'_> {
         let Self { report: plan, cloud, prepared, known, seconds } = self;
         let mut seconds = StageSeconds { plan: seconds, ..StageSeconds::default() };
         let start = Instant::now();
-        let [after_fit, after_structure] = if plan.quality == Quality::Draft { [1.0; 2] } else { FIT_SHARES };
+        let after_fit = if plan.quality == Quality::Draft { 1.0 } else { CASCADE_SHARE };
         let (field, fit) = prepared.fit(&Part::new(monitor, 0.0..after_fit / cascade::SHARE))?;
         seconds.fit = start.elapsed().as_secs_f64();
-
-        let frame = Frame::new(plan.up, plan.scene);
-        let left = known.moved(|p| frame.leave(p));
-        let start = Instant::now();
-        let structure = match plan.polish {
-            Some(_) => {
-                let part = Part::new(monitor, after_fit..after_structure);
-                Some(Found::find(cloud, &plan, &field, &left, &part)?)
-            }
-            None => None,
-        };
-        seconds.structure = start.elapsed().as_secs_f64();
-        let start = Instant::now();
-        let (field, polish) = match (&structure, plan.polish) {
-            (Some(structure), Some(params)) => {
-                monitor.stage("polishing");
-                let (field, report) = structure.polish(&field, cloud, &known, (frame, params), monitor)?;
-                (field, Some(report))
-            }
-            _ => (as_length(field, cloud, frame), None),
-        };
-        seconds.polish = start.elapsed().as_secs_f64();
-        monitor.share(1.0);
-        let (structure, found) = structure.map(Found::keep).unzip();
         let bounds = crate::domain::bounds(cloud.points.iter().copied());
-        let parts = FittedParts {
-            world_from_local: cloud.world_from_local,
-            scene: plan.scene,
-            frame: frame.rows(),
-            metric: Metric::Near,
-            bounds: bounds.into(),
-            noise: plan.noise,
-            trim: plan.trim,
-            min_component: plan.min_component,
-            points: cloud.points.par_iter().map(|p| p.map(|c| c as f32)).collect(),
-            attributes: cloud.attributes.clone(),
-            structure,
-            polygons: left.triangles().collect(),
-            lines: left.lines,
-        };
-        Ok((Fitted::new(field, parts)?, FittedReport { plan, fit, structure: found, polish, seconds }))
+        let shaped = shape(field, cloud, &plan, &known, (bounds.into(), None), &Part::new(monitor, after_fit..1.0))?;
+        let Shaped { fitted, structure, polish, seconds: own } = shaped;
+        (seconds.structure, seconds.polish) = own;
+        monitor.share(1.0);
+        Ok((fitted, FittedReport { plan, fit, structure, polish, seconds }))
     }
+}
+
+/// What comes after the cascade.
+pub(crate) struct Shaped {
+    pub(crate) fitted: Fitted,
+    pub(crate) structure: Option<StructureReport>,
+    pub(crate) polish: Option<PolishReport>,
+    /// Of the planes and of the polish.
+    pub(crate) seconds: (f64, f64),
+}
+
+/// Finds planes in the points and polishes F, or only makes it a length. `known` is in the frame of the fit. `bounds` is the box in which the
+/// surface ends; F is polished in the box of the points, and in `reach`, in the frame of the fit.
+pub(crate) fn shape(
+    field: LatticeField,
+    cloud: &Cloud,
+    plan: &PlanReport,
+    known: &Local,
+    (bounds, reach): ([[f64; 3]; 2], Option<[[f64; 3]; 2]>),
+    monitor: &dyn Monitor,
+) -> Result<Shaped, ReconstructError> {
+    let frame = Frame::new(plan.up, plan.scene);
+    let left = known.moved(|p| frame.leave(p));
+    let start = Instant::now();
+    let structure = match plan.polish {
+        Some(_) => Some(Found::find(cloud, plan, &field, &left, &Part::new(monitor, 0.0..STRUCTURE_SHARE))?),
+        None => None,
+    };
+    let of_structure = start.elapsed().as_secs_f64();
+    let start = Instant::now();
+    let (field, polish) = match (&structure, plan.polish) {
+        (Some(structure), Some(params)) => {
+            monitor.stage("polishing");
+            let (field, report) = structure.polish(&field, cloud, known, reach, (frame, params), monitor)?;
+            (field, Some(report))
+        }
+        _ => (as_length(field, cloud, frame), None),
+    };
+    let seconds = (of_structure, start.elapsed().as_secs_f64());
+    let (structure, found) = structure.map(Found::keep).unzip();
+    let parts = FittedParts {
+        world_from_local: cloud.world_from_local,
+        scene: plan.scene,
+        frame: frame.rows(),
+        metric: Metric::Near,
+        bounds,
+        noise: plan.noise,
+        trim: plan.trim,
+        min_component: plan.min_component,
+        points: cloud.points.par_iter().map(|p| p.map(|c| c as f32)).collect(),
+        attributes: cloud.attributes.clone(),
+        structure,
+        polygons: left.triangles().collect(),
+        lines: left.lines,
+    };
+    Ok(Shaped { fitted: Fitted::new(field, parts)?, structure: found, polish, seconds })
 }
 
 /// What the steps up to the extraction are of the whole where the mesh is simplified after them.
 const BEFORE_SIMPLIFY: f64 = 0.7;
-/// What of a fit with planes and polish is done after the cascade, and after the planes.
-const FIT_SHARES: [f64; 2] = [0.4, 0.7];
+/// What of a fit with planes and polish is done after the cascade; and what of the rest after the planes.
+const CASCADE_SHARE: f64 = 0.4;
+const STRUCTURE_SHARE: f64 = 0.5;
 
 /// What the fit is of the whole.
 fn fit_share(quality: Quality) -> f64 {

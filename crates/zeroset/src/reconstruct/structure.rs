@@ -74,12 +74,14 @@ impl Found {
         Ok(Self { facets, plane_of, curved_creases, report })
     }
 
-    /// Polishes F: points on planes give way to their planes. `known` is in the frame of the fit.
+    /// Polishes F: points on planes give way to their planes. `known` is in the frame of the fit, and so is `reach`, a box in which F is polished
+    /// even where there are no points.
     pub(super) fn polish(
         &self,
         field: &LatticeField,
         cloud: &Cloud,
         known: &Local,
+        reach: Option<[Vec3; 2]>,
         (frame, params): (Frame, PolishParams),
         monitor: &dyn Monitor,
     ) -> Result<(LatticeField, PolishReport), Cancelled> {
@@ -96,7 +98,7 @@ impl Found {
         };
         let facets: Vec<OrientedTriangle> = self.facets.oriented_triangles().map(turned).collect();
         let (triangles, segments): (Vec<_>, Vec<_>) = (known.triangles().collect(), known.segments().collect());
-        let held = Held { facets: &facets, triangles: &triangles, segments: &segments };
+        let held = Held { facets: &facets, triangles: &triangles, segments: &segments, reach };
         polish(field, &loose, held, params, monitor)
     }
 

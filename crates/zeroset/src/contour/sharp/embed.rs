@@ -22,20 +22,25 @@ const MOST_RINGS: usize = 4;
 
 /// Places whose coordinates single precision holds: what is true of a mesh on them is true of it in every file.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Raster {
+pub(crate) struct Raster {
     step: f64,
 }
 
 impl Raster {
-    /// The finest that holds a mesh: its steps are a power of two, the largest coordinate is about 2^23 of them.
+    /// The finest that holds a mesh.
     pub(super) fn new(mesh: &Mesh) -> Self {
-        let largest =
-            mesh.vertices.par_iter().map(|v| v.iter().fold(0.0, |m, c| c.abs().max(m))).reduce(|| 0.0, f64::max);
+        Self::up_to(
+            mesh.vertices.par_iter().map(|v| v.iter().fold(0.0, |m, c| c.abs().max(m))).reduce(|| 0.0, f64::max),
+        )
+    }
+
+    /// The finest for coordinates up to the largest: its steps are a power of two, the largest is about 2^23 of them.
+    pub(crate) fn up_to(largest: f64) -> Self {
         Self { step: if largest > 0.0 { 2.0_f64.powi(largest.log2().floor() as i32 - 22) } else { 1.0 } }
     }
 
     /// The place nearest to a position.
-    pub(super) fn nearest(self, v: Vec3) -> Vec3 {
+    pub(crate) fn nearest(self, v: Vec3) -> Vec3 {
         v.map(|c| (c / self.step).round_ties_even() * self.step)
     }
 }

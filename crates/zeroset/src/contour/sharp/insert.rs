@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use super::Seat;
 use super::creases::{Crossing, crossings};
 use super::sheets::Sheets;
+use crate::contour::seam::Seam;
 use crate::feature::Flat;
 use crate::mesh::Mesh;
 use crate::vec3::{self, Vec3};
@@ -25,23 +26,36 @@ pub(super) struct Inserted {
     pub(super) origins: Vec<Vec3>,
     /// The vertices between which each new one was put in, three at a corner; else the last is `u32::MAX`.
     pub(super) between: Vec<[u32; 3]>,
+    /// For each triangle whether it is the part's own; empty without a seam.
+    pub(super) own: Vec<bool>,
 }
 
-/// Puts vertices on their sheets and makes mesh edges along the creases, where these are no farther than `reach` from the mesh.
-pub(super) fn insert_creases(mesh: &mut Mesh, sheets: &Sheets, reach: f64) -> Inserted {
+/// Puts vertices on their sheets and makes mesh edges along the creases, where these are no farther than `reach` from the mesh. Held vertices
+/// and edges between them stay.
+pub(super) fn insert_creases(mesh: &mut Mesh, sheets: &Sheets, reach: f64, seam: Option<&Seam>) -> Inserted {
     let count = mesh.vertices.len() as u32;
+    let is_held = |v: u32| seam.is_some_and(|seam| seam.keys.contains_key(&v));
     let seat = |v: u32| {
+        if is_held(v) {
+            return Seat::Held;
+        }
         let sheet = sheets.of(v);
         if sheet.is_flat { Seat::On(sheet.flat) } else { Seat::Loose }
     };
     let mut seats: Vec<Seat> = (0..count).into_par_iter().map(seat).collect();
-    let foot = |v: u32| sheets.of(v).flat.foot(mesh.vertices[v as usize]);
+    let foot = |v: u32| {
+        let position = mesh.vertices[v as usize];
+        if is_held(v) { position } else { sheets.of(v).flat.foot(position) }
+    };
     let mut vertices: Vec<Vec3> = (0..count).into_par_iter().map(foot).collect();
     let mut origins = std::mem::take(&mut mesh.vertices);
     // The new vertex of each side of a triangle that crosses a crease.
     let mut cuts: Vec<(u32, u32)> = Vec::new();
     let mut between = Vec::new();
     for Crossing { ends, sides } in crossings(mesh, sheets) {
+        if ends.into_iter().all(is_held) {
+            continue;
+        }
         let flats = ends.map(|v| sheets.of(v).flat);
         let Some((share, position, direction)) = crossing(ends.map(|v| origins[v as usize]), flats, reach) else {
             continue;
@@ -58,6 +72,7 @@ pub(super) fn insert_creases(mesh: &mut Mesh, sheets: &Sheets, reach: f64) -> In
     let mut cuts = cuts.into_iter().peekable();
     let mut triangles = Vec::with_capacity(mesh.triangles.len());
     let mut facing: Vec<[f32; 3]> = Vec::with_capacity(mesh.triangles.len());
+    let mut own = Vec::new();
     let normal_of = |v: u32| sheets.of(v).flat.normal;
     for (t, corners) in mesh.triangles.iter().enumerate() {
         let mut cut = [None; 3];
@@ -96,10 +111,13 @@ pub(super) fn insert_creases(mesh: &mut Mesh, sheets: &Sheets, reach: f64) -> In
                 }
             }
         }
+        if let Some(seam) = seam {
+            own.resize(triangles.len(), seam.own[t]);
+        }
     }
     mesh.vertices = vertices;
     mesh.triangles = triangles;
-    Inserted { seats, facing, origins, between }
+    Inserted { seats, facing, origins, between, own }
 }
 
 /// Where a mesh edge meets the line of two sheets: the share of the edge before it, the position, and the line's direction.

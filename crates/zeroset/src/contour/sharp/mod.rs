@@ -51,11 +51,12 @@ mod tests;
 use rayon::prelude::*;
 use serde::Serialize;
 
+use super::seam::Seam;
 use crate::feature::{Facets, Flat};
 use crate::mesh::Mesh;
 use crate::spatial::PointTree;
 use crate::vec3::Vec3;
-use embed::Raster;
+pub(crate) use embed::Raster;
 use insert::{Inserted, insert_creases};
 pub(crate) use of_field::sharpen_field;
 use stars::{Fans, Stars};
@@ -110,21 +111,31 @@ pub(super) enum Seat {
     Along(Vec3, Vec3),
     /// Not at all.
     At,
+    /// Not at all, as it is on a seam.
+    Held,
 }
 
-/// Makes a mesh sharp.
-pub(crate) fn sharpen(mesh: &mut Mesh, known: &Known) -> SharpReport {
+/// Makes a mesh sharp. What is held at a seam stays; vertices are put on a raster in any case, the given one or that of the mesh.
+pub(crate) fn sharpen(mesh: &mut Mesh, known: &Known, seam: Option<(&mut Seam, Raster)>) -> SharpReport {
     let stars = Stars::new(mesh);
     let sheets = sheets::sheets(mesh, &stars, known);
     drop(stars);
     let on_planes = (0..mesh.vertices.len() as u32).filter(|&v| sheets.of(v).plane.is_some()).count();
     let first = mesh.vertices.len();
-    let raster = Raster::new(mesh);
-    let inserted = insert_creases(mesh, &sheets, insert::REACH * known.cell);
+    let (seam, raster) = seam.unzip();
+    let raster = raster.unwrap_or_else(|| Raster::new(mesh));
+    let mut inserted = insert_creases(mesh, &sheets, insert::REACH * known.cell, seam.as_deref());
     drop(sheets);
     let finish =
         Finish { first, cell: known.cell, settle: Some(known.curved_creases), moved: embed::MOVED * known.cell };
-    SharpReport { on_planes, ..finish.run(mesh, inserted, raster, |_, _| ()) }
+    let report = SharpReport { on_planes, ..finish.run(mesh, &mut inserted, raster, |_, _| ()) };
+    match seam {
+        Some(seam) => seam.own = inserted.own,
+        None => {
+            super::clip::drop_unused(mesh);
+        }
+    }
+    report
 }
 
 /// What is done once creases are in.
@@ -140,10 +151,11 @@ struct Finish {
 
 impl Finish {
     /// Lets vertices settle, takes folds away, and takes vertices back where triangles cut through others. `refine` moves vertices before that.
+    /// Leaves vertices without triangles.
     fn run(
         &self,
         mesh: &mut Mesh,
-        mut inserted: Inserted,
+        inserted: &mut Inserted,
         raster: Raster,
         refine: impl Fn(&mut Mesh, &[Seat]),
     ) -> SharpReport {
@@ -152,13 +164,12 @@ impl Finish {
         inserted.origins.par_iter_mut().for_each(|origin| *origin = raster.nearest(*origin));
         let fans = Fans::new(mesh);
         if let Some(everywhere) = self.settle {
-            settle::settle(mesh, &fans, &inserted, everywhere);
+            settle::settle(mesh, &fans, inserted, everywhere);
         }
-        let folded = tidy::tidy(mesh, fans, &mut inserted, self.cell);
+        let folded = tidy::tidy(mesh, fans, inserted, self.cell);
         refine(mesh, &inserted.seats);
         let (taken_back, intersections) = embed::embed(mesh, self.first, &inserted.origins, raster, self.moved);
         let (crease_length, crease_angle) = creases::measure(mesh, &inserted.seats);
-        super::clip::drop_unused(mesh);
         SharpReport {
             on_planes: 0,
             on_creases,

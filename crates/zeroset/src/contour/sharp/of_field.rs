@@ -7,6 +7,7 @@ use super::insert::{Inserted, insert_creases};
 use super::sheets::{Sheet, Sheets};
 use super::stars::Stars;
 use super::{Finish, Known, Raster, Seat, SharpReport, embed};
+use crate::contour::clip::drop_unused;
 use crate::feature::Flat;
 use crate::field::Field;
 use crate::mesh::Mesh;
@@ -27,7 +28,7 @@ pub(crate) fn sharpen_field(mesh: &mut Mesh, field: &dyn Field, known: &[Option<
     let numbers: Vec<u32> = mesh.vertices.par_iter().map(|&p| field.sheet(p)).collect();
     let OnSheets { sheets, feet, places } = OnSheets::new(mesh, field, &numbers, known, cell);
     let on_planes = (0..first as u32).filter(|&v| sheets.of(v).is_flat).count();
-    let mut inserted = insert_creases(mesh, &sheets, REACH * cell);
+    let mut inserted = insert_creases(mesh, &sheets, REACH * cell, None);
     drop(sheets);
     for (v, foot) in mesh.vertices.iter_mut().zip(&feet) {
         *v = foot.unwrap_or(*v);
@@ -45,7 +46,9 @@ pub(crate) fn sharpen_field(mesh: &mut Mesh, field: &dyn Field, known: &[Option<
             }
         });
     };
-    SharpReport { on_planes, ..finish.run(mesh, inserted, raster, refine) }
+    let report = SharpReport { on_planes, ..finish.run(mesh, &mut inserted, raster, refine) };
+    drop_unused(mesh);
+    report
 }
 
 /// What a vertex lies on.

@@ -19,8 +19,9 @@ const ROUNDS: usize = 8;
 /// Unless `everywhere`, only beside those.
 pub(super) fn settle(mesh: &mut Mesh, fans: &Fans, inserted: &Inserted, everywhere: bool) {
     let is_loose = |v: u32| inserted.seats[v as usize] == Seat::Loose;
+    let is_free = |v: u32| matches!(inserted.seats[v as usize], Seat::Loose | Seat::Held);
     let may =
-        |&v: &u32| is_loose(v) && (everywhere || is_beside(mesh, fans.of(v), is_loose)) && !is_rim(mesh, fans.of(v), v);
+        |&v: &u32| is_loose(v) && (everywhere || is_beside(mesh, fans.of(v), is_free)) && !is_rim(mesh, fans.of(v), v);
     let loose: Vec<u32> = (0..mesh.vertices.len() as u32).into_par_iter().filter(may).collect();
     for _ in 0..ROUNDS {
         let old = &mesh.vertices;

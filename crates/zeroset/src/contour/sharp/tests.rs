@@ -86,7 +86,7 @@ fn sharpened(f: impl Fn(Vec3) -> f64, features: &Features, points: &[Vec3]) -> (
         noise: 0.0,
         cell: CELL,
     };
-    let report = sharpen(&mut mesh, &known);
+    let report = sharpen(&mut mesh, &known, None);
     (mesh, report)
 }
 

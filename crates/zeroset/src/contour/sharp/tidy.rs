@@ -64,6 +64,8 @@ pub(super) fn tidy(mesh: &mut Mesh, fans: Fans, inserted: &mut Inserted, cell: f
     bad.retain(|&t| patchwork.is_bad(t));
     mesh.vertices = patchwork.vertices;
     mesh.triangles = patchwork.triangles;
+    let mut triangles = mesh.triangles.iter();
+    inserted.own.retain(|_| triangles.next().is_some_and(|corners| *corners != DEAD));
     mesh.triangles.retain(|corners| *corners != DEAD);
     bad.len()
 }
@@ -216,6 +218,7 @@ impl Patchwork<'_> {
             }
             Seat::On(flat) => flat.distance(p).abs() < near,
             Seat::Loose => true,
+            Seat::Held => false,
         }
     }
 
@@ -261,6 +264,9 @@ impl Patchwork<'_> {
     fn flip(&mut self, a: u32, b: u32, touched: &mut Vec<u32>) -> bool {
         let pair = self.at_edge(a, b);
         let &[s, t] = pair.as_slice() else { return false };
+        if [a, b].iter().all(|&v| self.seats[v as usize] == Seat::Held) {
+            return false;
+        }
         let facing = [s, t].map(|t| self.facing[t as usize].map(f64::from));
         if vec3::dot(facing[0], facing[1]) < FLAT {
             return false;
@@ -305,7 +311,7 @@ impl Patchwork<'_> {
             vec3::scale(sum, 1.0 / of.len() as f64)
         };
         let target = match self.seats[v as usize] {
-            Seat::At => return false,
+            Seat::At | Seat::Held => return false,
             Seat::Along(origin, direction) => {
                 let middle = mean(&around);
                 vec3::add_scaled(origin, direction, vec3::dot(vec3::sub(middle, origin), direction))

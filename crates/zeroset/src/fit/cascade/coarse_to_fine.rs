@@ -1,5 +1,6 @@
 //! The cascade: from the seed on the coarsest lattice to the finest.
 
+use std::borrow::Cow;
 use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
@@ -10,6 +11,7 @@ use super::gradient::{gradient_lengths, linearise, thin_share};
 use super::level::{FixedFaces, Level, LevelParams, Nodes};
 use super::operator::{apply, energy};
 use super::prolong::{Solved, band, complete, prolong};
+use super::region::Region;
 use super::seed::boundary_potential;
 use super::solve::{SolveParams, conjugate_gradients};
 use crate::domain::{Cells, Lattice, LatticeError, LatticePoints, bounds};
@@ -204,13 +206,18 @@ impl Prepared {
     ) -> Result<Self, LatticeError> {
         let (low, high) = bounds(points.iter().copied());
         let lattice = Lattice::around(low, high, params.resolution, params.padding_rel)?;
+        Ok(Self::on(lattice, points, samples, params))
+    }
+
+    /// The same on a lattice that is there.
+    pub(crate) fn on(lattice: Lattice, points: &[[f64; 3]], samples: &[[f64; 3]], params: &FitParams) -> Self {
         let points = if samples.is_empty() {
             LatticePoints::new(&lattice, points)
         } else {
             LatticePoints::new(&lattice, &[points, samples].concat())
         };
         let occupied_cells = Cells::new(&lattice, &points, lattice.finest).len();
-        Ok(Self { lattice, points, params: params.clone(), occupied_cells })
+        Self { lattice, points, params: params.clone(), occupied_cells }
     }
 
     /// Cells of the finest level that hold points. Cost of the fit and size of the mesh are proportional to it.
@@ -230,14 +237,38 @@ impl Prepared {
     /// # Errors
     /// If the screening is not positive, or the monitor asks to stop.
     pub fn fit(self, monitor: &dyn Monitor) -> Result<(LatticeField, FitReport), FitError> {
+        let last = self.lattice.finest;
+        self.cascade(None, monitor)?.run(last)
+    }
+
+    /// Fits F on the levels from the coarsest to this one only: what [`Self::refine`] starts from.
+    ///
+    /// # Errors
+    /// As for [`Self::fit`].
+    pub(crate) fn coarse(self, last: u32, monitor: &dyn Monitor) -> Result<(LatticeField, FitReport), FitError> {
+        self.cascade(None, monitor)?.run(last)
+    }
+
+    /// Fits F on the levels after a coarse one, in a region. The points are those of the region on each level, and may be fewer far from its midst.
+    ///
+    /// # Errors
+    /// As for [`Self::fit`].
+    pub(crate) fn refine(
+        self,
+        coarse: &LatticeField,
+        region: &Region,
+        monitor: &dyn Monitor,
+    ) -> Result<(LatticeField, FitReport), FitError> {
+        let start = region.of_coarse(coarse);
+        self.cascade(Some(region), monitor)?.go_on(start)
+    }
+
+    fn cascade<'a>(self, region: Option<&'a Region>, monitor: &'a dyn Monitor) -> Result<Cascade<'a>, FitError> {
         let Self { lattice, points, params, .. } = self;
         if !(params.screening.is_finite() && params.screening > 0.0) {
             return Err(FitError::Screening(params.screening));
         }
-        let cascade = Cascade { lattice, points, params: &params, monitor };
-        let (fitted, report) = cascade.run()?;
-        let Solved { blocks, known, f, .. } = fitted.solved;
-        Ok((LatticeField::new(cascade.lattice, blocks, known, f), report))
+        Ok(Cascade { lattice, points, params, region, monitor })
     }
 }
 
@@ -256,29 +287,55 @@ pub fn fit(
 struct Cascade<'a> {
     lattice: Lattice,
     points: LatticePoints,
-    params: &'a FitParams,
+    params: FitParams,
+    /// Where F is looked for on levels that are refined; `None`: everywhere.
+    region: Option<&'a Region>,
     monitor: &'a dyn Monitor,
 }
 
 impl Cascade<'_> {
-    fn run(&self) -> Result<(Fitted, FitReport), FitError> {
+    /// From the seed to a level.
+    fn run(&self, last: u32) -> Result<(LatticeField, FitReport), FitError> {
         let mut report = FitReport::default();
         let levels = self.lattice.finest + 1;
         self.monitor.stage(&format!("fitting level 1 of {levels}"));
         let mut current = self.seeded(0)?;
-        for index in 1..levels {
+        for index in 1..=last {
             self.monitor.share(self.share_before(index));
             self.monitor.stage(&format!("fitting level {} of {levels}", index + 1));
             report.levels.push(current.report.clone());
             let thin = current.report.thin_walled;
             let most = if thin { MAX_THIN_SEED_NODES } else { MAX_SEED_NODES };
-            current =
-                if self.is_dense(index, most) { self.climb(current, index)? } else { self.refined(&current, index)? };
+            current = if self.is_dense(index, most) {
+                self.climb(current, index)?
+            } else {
+                let LevelReport { thin_share, thin_walled, .. } = current.report;
+                self.refined(&current.solved, index, (thin_share, thin_walled))?
+            };
         }
-        self.monitor.share(self.share_before(levels));
-        report.levels.push(current.report.clone());
+        self.monitor.share(self.share_before(last + 1));
+        report.levels.push(current.report);
+        Ok(self.finished_at(current.solved, report))
+    }
+
+    /// From the level after one that is solved to the finest.
+    fn go_on(&self, mut solved: Solved) -> Result<(LatticeField, FitReport), FitError> {
+        let mut report = FitReport::default();
+        for index in solved.index + 1..=self.lattice.finest {
+            self.monitor.share(self.share_before(index));
+            self.monitor.stage(&format!("fitting level {} of {}", index + 1, self.lattice.finest + 1));
+            let fitted = self.refined(&solved, index, (None, false))?;
+            solved = fitted.solved;
+            report.levels.push(fitted.report);
+        }
+        Ok(self.finished_at(solved, report))
+    }
+
+    /// F on a level as a lattice of its own.
+    fn finished_at(&self, solved: Solved, mut report: FitReport) -> (LatticeField, FitReport) {
         report.peak_bytes = report.levels.iter().map(|l| l.bytes).max().unwrap_or(0);
-        Ok((current, report))
+        let Solved { index, blocks, known, f } = solved;
+        (LatticeField::new(self.lattice.up_to(index), blocks, known, f), report)
     }
 
     /// The share of the whole work that is done before a level. A level costs about four times as much as the one before.
@@ -412,23 +469,34 @@ impl Cascade<'_> {
         index <= self.lattice.finest && self.lattice.nodes_at(index).into_iter().all(|n| n <= most)
     }
 
-    /// Continues on the band of the next level.
-    fn refined(&self, coarse: &Fitted, index: u32) -> Result<Fitted, FitError> {
+    /// The points that take part on a level that is refined.
+    fn points_at(&self, index: u32) -> Cow<'_, LatticePoints> {
+        self.region
+            .map_or(Cow::Borrowed(&self.points), |region| Cow::Owned(region.points(&self.lattice, &self.points, index)))
+    }
+
+    /// Continues on the band of the next level. It is told whether walls are thin, and how many of them.
+    fn refined(
+        &self,
+        coarse: &Solved,
+        index: u32,
+        (thin_share, thin_walled): (Option<f64>, bool),
+    ) -> Result<Fitted, FitError> {
         let start = Instant::now();
-        let cells = Cells::new(&self.lattice, &self.points, index);
+        let points = &*self.points_at(index);
+        let cells = Cells::new(&self.lattice, points, index);
         let params = self.level_params();
-        let nodes = band(&self.lattice, &self.points, cells, &coarse.solved, &params);
-        let mut level = Level::new(&self.lattice, &self.points, index, nodes, &params);
-        let LevelReport { thin_share, thin_walled, .. } = coarse.report;
+        let nodes = band(&self.lattice, points, cells, coarse, &params, self.region);
+        let mut level = Level::new(&self.lattice, points, index, nodes, &params);
         if !thin_walled {
             level.gradient = Gradient::Recovered;
         }
-        let f = prolong(&coarse.solved, &level.blocks, &level.known);
+        let f = prolong(coarse, &level.blocks, &level.known);
         let steps = STEPS[(index as usize).min(STEPS.len() - 1)];
         let (f, report) = self.iterate(&level, f, steps, start)?;
         let report = LevelReport { thin_share, thin_walled, ..report };
         let (f, report) = if thin_walled { self.finished(&mut level, f, report, start)? } else { (f, report) };
-        let solved = complete(level.into_solved(f), &coarse.solved);
+        let solved = complete(level.into_solved(f), coarse, self.region);
         Ok(Fitted { solved, report: LevelReport { seconds: start.elapsed().as_secs_f64(), ..report } })
     }
 

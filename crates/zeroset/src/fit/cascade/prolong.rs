@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::level::{LevelParams, Nodes, data_blocks};
 use super::prior::Columns;
+use super::region::Region;
 use crate::domain::{
     Blocks, Cells, Lattice, LatticePoints, Mask, NONE, TETRAHEDRA, block_key, dilate, dilate_box, mask_get, mask_set,
     neighbor_code, shift, tetrahedron_of,
@@ -75,13 +76,15 @@ impl Parent {
 }
 
 /// The nodes of the next finer level: those within [`BAND`] steps of the data, of the zero set of the prolonged F, or of a node that the column
-/// prior tells another sign than the prolonged F has; and those one step further as fixed neighbours.
+/// prior tells another sign than the prolonged F has; and those one step further as fixed neighbours. In a region data and zero set beyond it
+/// do not count.
 pub(super) fn band(
     lattice: &Lattice,
     points: &LatticePoints,
     cells: Cells,
     coarse: &Solved,
     params: &LevelParams,
+    region: Option<&Region>,
 ) -> Nodes {
     let index = coarse.index + 1;
     let extent = lattice.blocks_at(index);
@@ -101,6 +104,9 @@ pub(super) fn band(
     keys.extend_from_slice(&cells.block_keys);
     keys.par_sort_unstable();
     keys.dedup();
+    if let Some(region) = region {
+        keys.retain(|&key| region.contains(index, key, 0));
+    }
     let blocks = Blocks::new(Blocks::grown_keys(&keys, extent), extent);
     let data_block = data_blocks(&blocks, &cells);
     let shift = lattice.shift_at(index);
@@ -302,12 +308,17 @@ pub(super) fn prolong(coarse: &Solved, fine: &Blocks, known: &[Mask]) -> Vec<f32
 ///
 /// While a level is solved the zero set moves, and may come to lie against the rim of the band: the tetrahedra there would be cut
 /// off and leave holes in the surface. Beyond the rim F is what it was before, so the coarse values continue it.
-pub(super) fn complete(mut level: Solved, coarse: &Solved) -> Solved {
+///
+/// In a region the surface is followed to its rim.
+pub(super) fn complete(mut level: Solved, coarse: &Solved, region: Option<&Region>) -> Solved {
     // Each round follows the zero set by one node; that of the coarse level lies in the band, so few are needed. On the scans
     // measured one round of at most eleven nodes was enough.
     loop {
         let crossing: Vec<Mask> = (0..level.blocks.len()).into_par_iter().map(|b| sign_changes(&level, b)).collect();
-        let keys = Blocks::grown_keys(&keys_on_rim(&level, &crossing), level.blocks.extent);
+        let mut keys = Blocks::grown_keys(&keys_on_rim(&level, &crossing), level.blocks.extent);
+        if let Some(region) = region {
+            keys.retain(|&key| region.contains(level.index, key, 1));
+        }
         let mut all: Vec<u64> = level.blocks.keys.iter().copied().chain(keys).collect();
         all.par_sort_unstable();
         all.dedup();

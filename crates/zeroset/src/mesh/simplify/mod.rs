@@ -77,7 +77,7 @@ mod surface;
 
 use std::time::Instant;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::edges::Edges;
 use super::{Mesh, MeshError, SHARP_ANGLE};
@@ -90,7 +90,7 @@ use features::Features;
 use surface::Surface;
 
 /// When to stop: at the number of triangles or at the error, whichever comes first. One of them must be given.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SimplifyParams {
     /// The number of triangles wanted; `None`: as few as the error allows.
     pub triangles: Option<usize>,

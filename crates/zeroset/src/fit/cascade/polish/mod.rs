@@ -30,7 +30,7 @@ mod start;
 mod tests;
 
 use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::level::{FixedFaces, Level, LevelParams, Nodes};
 use super::operator::apply;
@@ -49,7 +49,7 @@ pub(crate) use pieces::{Held, OrientedTriangle};
 use start::{Start, start};
 
 /// How to polish.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct PolishParams {
     /// The weight alpha of the data.
     pub screening: f64,

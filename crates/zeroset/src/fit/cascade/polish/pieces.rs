@@ -25,6 +25,8 @@ pub(crate) struct Held<'a> {
     pub(crate) triangles: &'a [[Vec3; 3]],
     /// Lines.
     pub(crate) segments: &'a [[Vec3; 2]],
+    /// A box in which F is polished even where there are no points.
+    pub(crate) reach: Option<[Vec3; 2]>,
 }
 
 impl Held<'_> {

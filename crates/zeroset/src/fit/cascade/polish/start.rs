@@ -140,7 +140,8 @@ pub(super) fn start(field: &LatticeField, points: &[Vec3], held: Held<'_>) -> St
 /// The blocks within the box of all data and a little beyond: around open ground the zero set goes on to the faces of the domain, where nobody
 /// looks at it.
 fn reached(field: &LatticeField, points: &[Vec3], held: Held<'_>) -> Vec<bool> {
-    let (low, high) = bounds(points.iter().copied().chain(held.corners()));
+    let corners = held.reach.into_iter().flatten();
+    let (low, high) = bounds(points.iter().copied().chain(held.corners()).chain(corners));
     let lattice = &field.lattice;
     let in_cells = |p: f64, a: usize| (p - lattice.origin[a]) / lattice.spacing;
     let inside = |c: &[u32; 3]| {

@@ -50,7 +50,7 @@ impl Placed {
         let index = coarse.index + 1;
         let cells = Cells::new(&self.lattice, &self.points, index);
         let params = LevelParams { alpha: ALPHA, faces, column_prior };
-        let nodes = band(&self.lattice, &self.points, cells, coarse, &params);
+        let nodes = band(&self.lattice, &self.points, cells, coarse, &params, None);
         Level::new(&self.lattice, &self.points, index, nodes, &params)
     }
 
@@ -450,7 +450,7 @@ fn completed_levels_cut_no_cell_around_the_surface() {
                 *v += if mask_get(mask, local) { 0.5 * moved as f32 } else { 0.0 };
             }
         }
-        let done = complete(level.into_solved(f), &solved);
+        let done = complete(level.into_solved(f), &solved, None);
         assert_eq!(done.index, 1);
         let (crossed, cut) = crossed_cells(&done);
         assert!(crossed > 1000);
