@@ -9,6 +9,7 @@ use zeroset::mesh::{CompareError, MeshError};
 use zeroset::model::ModelError;
 use zeroset::reconstruct::ReconstructError;
 use zeroset_io::{IoError, SolidError, shown};
+use zeroset_tiles::TilesError;
 
 /// Why a command failed. The message names the file and the remedy.
 #[derive(Debug, thiserror::Error)]
@@ -19,6 +20,41 @@ pub(crate) enum CliError {
     /// Standard output could not be written.
     #[error("standard output: {0}; check where it goes to")]
     Stdout(#[source] std::io::Error),
+    /// Tiles cannot be made.
+    #[error(transparent)]
+    Tiles(TilesError),
+    /// An option that is not possible with tiles.
+    #[error("{option} needs all points at once, so it is not possible with tiles; {remedy}")]
+    NotWithTiles {
+        /// The option.
+        option: &'static str,
+        /// What to do.
+        remedy: &'static str,
+    },
+    /// A length in a unit that cannot be converted.
+    #[error(
+        "{input}: the unit of its coordinates is not stated, so {option} cannot be converted; give it without a unit"
+    )]
+    NoUnit {
+        /// The input.
+        input: String,
+        /// The option.
+        option: &'static str,
+    },
+    /// More tiles at a time than memory is there for.
+    #[error(
+        "{jobs} tiles of {side} at a time need about {needed_gb:.1} GB, more than the {allowed_gb:.1} GB at hand; give fewer --jobs, a shorter --tile, or more --memory"
+    )]
+    TilesTooLarge {
+        /// Tiles at a time.
+        jobs: usize,
+        /// Their side.
+        side: f64,
+        /// Memory that they need.
+        needed_gb: f64,
+        /// Memory allowed.
+        allowed_gb: f64,
+    },
     /// The reconstruction is not possible.
     #[error("{inputs}: {source}")]
     Reconstruct {
@@ -179,5 +215,14 @@ pub(crate) fn in_words(paths: &[PathBuf]) -> String {
     match paths.len() {
         0 | 1 => first,
         n => format!("{first} and {} more", n - 1),
+    }
+}
+
+impl From<TilesError> for CliError {
+    fn from(error: TilesError) -> Self {
+        match error {
+            TilesError::Cancelled(_) | TilesError::Reconstruct(ReconstructError::Cancelled(_)) => Self::Interrupted,
+            other => Self::Tiles(other),
+        }
     }
 }

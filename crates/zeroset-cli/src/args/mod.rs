@@ -6,6 +6,7 @@ mod fit2d;
 mod model;
 mod shared;
 mod simplify;
+mod tiles;
 mod values;
 
 use std::num::NonZeroUsize;
@@ -21,7 +22,8 @@ pub use fit2d::{BasisChoice, BranchesChoice, DomainChoice, Fit2dArgs, Normalizat
 pub use model::{EditArgs, EvalArgs, FitArgs, MeshArgs, RasterArgs, SliceArgs, SurfaceArgs, VolumeArgs};
 pub use shared::{BriefRunArgs, InputArgs, RunArgs, SceneArgs, SceneChoice, SimplifyTarget, UpChoice};
 pub use simplify::SimplifyArgs;
-pub use values::{Bounds, Classes, OrAuto, OrOff, Plane, Rectangle};
+pub use tiles::{TileArgs, TileFormatChoice};
+pub use values::{Bounds, Classes, Length, OrAuto, OrOff, Plane, Rectangle};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -38,6 +40,7 @@ Examples:
   zeroset reconstruct tile.laz -o houses.obj --classes 2,6 --bounds 84800,447400,84900,447500
   zeroset reconstruct statue.ply -o statue.stl --scene object --up y
   zeroset reconstruct tile.laz -o light.ply --max-error 0.05
+  zeroset reconstruct city/*.laz -o city/tiles/ --tile 250m --memory 4GB --jobs 2
   zeroset reconstruct tile.laz -o streets.ply --quality normal --constraints kerbs.dxf --constraints roofs.geojson
   zeroset reconstruct tile.laz --dry-run
 
@@ -176,8 +179,8 @@ pub struct ReconstructArgs {
     /// The points.
     #[command(flatten)]
     pub input: InputArgs,
-    /// Mesh to write; the suffix tells the format.
-    #[arg(short, long, value_name = "FILE", required_unless_present = "dry_run")]
+    /// Mesh to write; the suffix tells the format. A folder gets a file for each tile.
+    #[arg(short, long, value_name = "FILE|FOLDER/", required_unless_present = "dry_run")]
     pub output: Option<PathBuf>,
 
     /// How the points are fitted.
@@ -189,6 +192,9 @@ pub struct ReconstructArgs {
     /// How far the mesh is simplified.
     #[command(flatten)]
     pub simplify: SimplifyTarget,
+    /// How ground that is larger than memory is cut up.
+    #[command(flatten)]
+    pub tiles: TileArgs,
 
     /// Print what would be done, and the memory that it takes, and write no mesh.
     #[arg(long, help_heading = "Running")]

@@ -2,6 +2,8 @@
 
 use std::num::NonZeroUsize;
 
+use zeroset_io::LinearUnit;
+
 /// ASPRS classes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Classes(pub Vec<u8>);
@@ -84,6 +86,29 @@ fn number(text: &str) -> Result<f64, String> {
 
 pub(super) fn positive(text: &str) -> Result<f64, String> {
     number(text).and_then(|v| if v > 0.0 { Ok(v) } else { Err("it must be greater than 0".into()) })
+}
+
+/// A length, and its unit where one was typed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Length {
+    /// How many.
+    pub value: f64,
+    /// Of what; `None`: of the unit of the input.
+    pub unit: Option<LinearUnit>,
+}
+
+/// `250`, `250m`, `0.25 km`, `800ft`, `800 us-ft`.
+pub(super) fn length(text: &str) -> Result<Length, String> {
+    const UNITS: [(&str, f64, LinearUnit); 4] = [
+        ("us-ft", 1.0, LinearUnit::UsSurveyFoot),
+        ("ft", 1.0, LinearUnit::Foot),
+        ("km", 1000.0, LinearUnit::Metre),
+        ("m", 1.0, LinearUnit::Metre),
+    ];
+    let typed = text.trim().to_ascii_lowercase();
+    let found = UNITS.iter().find_map(|(suffix, factor, unit)| Some((typed.strip_suffix(suffix)?, *factor, *unit)));
+    let (digits, factor, unit) = found.map_or((typed.as_str(), 1.0, None), |(d, f, u)| (d.trim_end(), f, Some(u)));
+    Ok(Length { value: factor * positive(digits)?, unit })
 }
 
 pub(super) fn not_negative(text: &str) -> Result<f64, String> {

@@ -9,6 +9,7 @@ pub(crate) use names::{
     shown_output,
 };
 pub(crate) use scene::{SURVEYED, announced, scene, up};
+pub(crate) use select::filter;
 
 use std::time::Instant;
 

@@ -52,6 +52,12 @@ pub(super) fn select(
     Ok(Input { cloud, read, filters, dropped, warnings })
 }
 
+/// What of an input is used, but for what is isolated.
+pub(crate) fn filter(args: &InputArgs) -> Filter {
+    let filters = filters(args);
+    Filter { only_classes: filters.classes, exclude_classes: filters.exclude, bounds: args.bounds.map(|b| b.0) }
+}
+
 fn filters(args: &InputArgs) -> Filters {
     let classes = args.classes.as_ref().map(|c| c.0.clone());
     let exclude = args.exclude.as_ref().map_or_else(

@@ -2,6 +2,7 @@
 
 pub(crate) mod known;
 mod text;
+mod tiles;
 
 use std::path::Path;
 use std::time::Instant;
@@ -13,7 +14,7 @@ use zeroset::reconstruct::{
     AttributeChoice, MinComponent, Plan, PlanReport, Quality, ReconstructError, ReconstructParams, Resolution, Trim,
     plan,
 };
-use zeroset_io::{CloudFormat, MeshFormat, WriteOptions, shown, write_mesh};
+use zeroset_io::{CloudFormat, WriteOptions, shown, write_mesh};
 
 use crate::args::{
     AttributesChoice, FitOptions, InputArgs, OrAuto, OrOff, QualityChoice, ReconstructArgs, RunArgs, SceneChoice,
@@ -36,6 +37,11 @@ pub(crate) fn run(args: &ReconstructArgs) -> Result<(), CliError> {
     };
     let known = known::read(&args.fit)?;
     threads::start(args.run.threads)?;
+    if tiles::are_asked_for(args) {
+        let mut constraints = Constraints::default();
+        known.into_iter().for_each(|file| constraints.append(file.constraints));
+        return tiles::reconstruct(args, params, constraints, console);
+    }
 
     let (mut input, reading) = Input::read(&args.input, console)?;
     let mut seconds = Seconds { read: reading.read, select: reading.select, ..Seconds::default() };
@@ -119,9 +125,10 @@ pub(crate) fn attributes(choice: Option<AttributesChoice>) -> AttributeChoice {
 fn check(args: &ReconstructArgs) -> Result<Vec<CloudFormat>, CliError> {
     if let Some(output) = &args.output {
         refuse_mesh_stream(output)?;
-        MeshFormat::from_path(output)?;
+        tiles::check_format(output)?;
     }
-    check_files(&args.input, &args.fit, args.output.as_deref(), &args.run)
+    let file = args.output.as_deref().filter(|output| !tiles::is_folder(output));
+    check_files(&args.input, &args.fit, file, &args.run)
 }
 
 /// Looks at the names of the files that are read and written. Returns the formats of the inputs.

@@ -24,6 +24,12 @@ impl TileFit {
         Self(fitted)
     }
 
+    /// Takes the model out.
+    #[must_use]
+    pub fn into_fitted(self) -> Fitted {
+        self.0
+    }
+
     /// The model: F in the tile and its halo, with what the points there show.
     #[must_use]
     pub fn fitted(&self) -> &Fitted {

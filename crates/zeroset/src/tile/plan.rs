@@ -136,6 +136,19 @@ impl TilePlan {
         [corner(0), corner(1)]
     }
 
+    /// The place that positions of a tile's surface are told from, in local coordinates: about the middle of its box, and on the raster of all
+    /// vertices.
+    #[must_use]
+    pub fn middle(&self, tile: TileId, [low, high]: [[f64; 3]; 2]) -> [f64; 3] {
+        let up = self.report.up;
+        let [first, last] = self.outline(tile);
+        let offset = up.upright(self.world_from_local);
+        let (low, high) = (up.upright(low), up.upright(high));
+        let of_tile = [0, 1].map(|a| 0.5 * (first[a] + last[a]) - offset[a]);
+        let middle = up.restore([of_tile[0], of_tile[1], 0.5 * (low[2] + high[2])]);
+        super::layout::raster(self.side).nearest(middle)
+    }
+
     /// The tiles around one that hold points, in order.
     pub fn neighbors(&self, tile: TileId) -> impl Iterator<Item = TileId> + '_ {
         tile.around().filter(|other| self.tiles.binary_search(other).is_ok())

@@ -7,11 +7,13 @@ use super::layout::Layout;
 use crate::cloud::{Attributes, Cloud};
 use crate::reconstruct::ReconstructError;
 
-/// Points kept for each cell: coarser levels see about as much of a surface as the finest does.
-const KEPT: usize = 4;
+/// Points kept for each cell.
+///
+/// Delft in nine tiles lies .037, .021 and .012 cells in the mean from the same without tiles, in a draft, with 4, 16 and 64.
+const KEPT: usize = 32;
 
 impl TilePlan {
-    /// The points of a tile that are used where cells are 2^`thinning` times as wide as the finest: at most four a cell, and at least one for each that
+    /// The points of a tile that are used where cells are 2^`thinning` times as wide as the finest: at most 32 a cell, and at least one for each that
     /// holds any. Values beside the positions are left out.
     ///
     /// # Errors

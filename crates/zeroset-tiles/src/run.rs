@@ -1,0 +1,184 @@
+//! All steps on this machine, several tiles at a time.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::time::Instant;
+
+use rayon::ThreadPoolBuilder;
+use serde::Serialize;
+use zeroset::monitor::{Monitor, check};
+use zeroset::reconstruct::ReconstructParams;
+use zeroset::tile::{TileId, TilePlan};
+
+use crate::folder::create;
+use crate::tileset::{TileEntry, write_tileset};
+use crate::{Folder, Sorted, TileFormat, TilesError};
+
+/// How tiles are made.
+#[derive(Debug, Clone)]
+pub struct RunParams {
+    /// What is reconstructed, and how.
+    pub reconstruct: ReconstructParams,
+    /// Tiles at a time.
+    pub jobs: usize,
+    /// Threads in all.
+    pub threads: usize,
+    /// How tiles are written.
+    pub format: TileFormat,
+}
+
+/// Wall seconds of each kind of step, this time.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct TileSeconds {
+    /// Plan and thinning.
+    pub plan: f64,
+    /// The coarse levels.
+    pub coarse: f64,
+    /// Fits of tiles.
+    pub fit: f64,
+    /// Their surfaces.
+    pub mesh: f64,
+    /// Writing of what was asked for.
+    pub write: f64,
+}
+
+/// What was made.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RunReport {
+    /// The plan.
+    pub plan: TilePlan,
+    /// Tiles with a surface.
+    pub tiles: Vec<TileEntry>,
+    /// Triangles of all.
+    pub triangles: u64,
+    /// Wall seconds, this time.
+    pub seconds: TileSeconds,
+}
+
+/// The share of the whole that is done after each kind of step.
+const SHARES: [f64; 5] = [0.03, 0.08, 0.6, 0.95, 1.0];
+
+/// Makes all that is missing up to the surfaces of all tiles.
+///
+/// # Errors
+/// If a step fails or the monitor asks to stop. What was made stays, and the next run goes on from there.
+pub fn run(
+    folder: &Folder,
+    sorted: &Sorted,
+    params: &RunParams,
+    monitor: &dyn Monitor,
+) -> Result<(TilePlan, TileSeconds), TilesError> {
+    let mut seconds = TileSeconds::default();
+    let start = Instant::now();
+    monitor.stage("measuring the points");
+    let constraints = &params.reconstruct.constraints;
+    let plan = folder.make_plan(sorted, &params.reconstruct)?;
+    let crew = Crew { jobs: params.jobs, threads: params.threads, monitor };
+    crew.each(&plan.tiles, "thinning the points of", 0.0..SHARES[0], |tile, _| folder.thin(sorted, &plan, tile))?;
+    seconds.plan = start.elapsed().as_secs_f64();
+    let start = Instant::now();
+    monitor.share(SHARES[0]);
+    folder.fit_coarse(sorted, &plan, constraints, &Quiet(monitor))?;
+    let coarse = folder.read_coarse()?;
+    seconds.coarse = start.elapsed().as_secs_f64();
+    let start = Instant::now();
+    crew.each(&plan.tiles, "fitting", SHARES[1]..SHARES[2], |tile, monitor| {
+        folder.fit_tile(sorted, &plan, tile, (&coarse, constraints), monitor)
+    })?;
+    drop(coarse);
+    seconds.fit = start.elapsed().as_secs_f64();
+    let start = Instant::now();
+    crew.each(&plan.tiles, "extracting", SHARES[2]..SHARES[3], |tile, monitor| {
+        folder.mesh_tile(sorted, &plan, tile, monitor)
+    })?;
+    seconds.mesh = start.elapsed().as_secs_f64();
+    Ok((plan, seconds))
+}
+
+/// Writes the tiles that are extracted, and the lists of them.
+///
+/// # Errors
+/// If a file cannot be read or written, or the monitor asks to stop.
+pub fn write_tiles(
+    folder: &Folder,
+    sorted: &Sorted,
+    plan: &TilePlan,
+    format: TileFormat,
+    crew: &Crew<'_>,
+) -> Result<Vec<TileEntry>, TilesError> {
+    create(&folder.path().join("tiles"))?;
+    let entries: Mutex<Vec<TileEntry>> = Mutex::default();
+    crew.each(&plan.tiles, "writing", SHARES[3]..SHARES[4], |tile, _| {
+        if let Some(entry) = folder.write_tile(sorted, plan, tile, format)? {
+            entries.lock().unwrap_or_else(PoisonError::into_inner).push(entry);
+        }
+        Ok(())
+    })?;
+    let mut entries = entries.into_inner().unwrap_or_else(PoisonError::into_inner);
+    entries.sort_by_key(|entry| entry.id);
+    write_tileset(folder, sorted, plan, &entries, format)?;
+    Ok(entries)
+}
+
+/// Those who work on tiles.
+pub struct Crew<'a> {
+    /// Tiles at a time.
+    pub jobs: usize,
+    /// Threads in all.
+    pub threads: usize,
+    /// Who watches.
+    pub monitor: &'a dyn Monitor,
+}
+
+impl Crew<'_> {
+    /// Does something for each tile. After the first error no new tile is begun.
+    fn each(
+        &self,
+        tiles: &[TileId],
+        what: &str,
+        shares: std::ops::Range<f64>,
+        work: impl Fn(TileId, &dyn Monitor) -> Result<(), TilesError> + Sync,
+    ) -> Result<(), TilesError> {
+        let (next, done) = (AtomicUsize::new(0), Mutex::new(0_usize));
+        let failed: Mutex<Option<TilesError>> = Mutex::new(None);
+        let jobs = self.jobs.clamp(1, tiles.len().max(1));
+        let threads = (self.threads / jobs).max(1);
+        let quiet = Quiet(self.monitor);
+        let one = |tile: TileId| -> Result<(), TilesError> {
+            check(self.monitor)?;
+            work(tile, &quiet)?;
+            let mut done = done.lock().unwrap_or_else(PoisonError::into_inner);
+            *done += 1;
+            self.monitor.stage(&format!("{what} tile {} of {}", *done, tiles.len()));
+            self.monitor.share(shares.start + (shares.end - shares.start) * *done as f64 / tiles.len() as f64);
+            Ok(())
+        };
+        let worker = || {
+            while failed.lock().unwrap_or_else(PoisonError::into_inner).is_none() {
+                let Some(&tile) = tiles.get(next.fetch_add(1, Ordering::Relaxed)) else { break };
+                if let Err(error) = one(tile) {
+                    failed.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+                }
+            }
+        };
+        std::thread::scope(|scope| {
+            for _ in 0..jobs {
+                scope.spawn(|| match ThreadPoolBuilder::new().num_threads(threads).build() {
+                    Ok(pool) => pool.install(worker),
+                    // The pool of the process will do.
+                    Err(_) => worker(),
+                });
+            }
+        });
+        failed.into_inner().unwrap_or_else(PoisonError::into_inner).map_or(Ok(()), Err)
+    }
+}
+
+/// Passes on the wish to stop, and nothing of the progress: that is told tile by tile.
+struct Quiet<'a>(&'a dyn Monitor);
+
+impl Monitor for Quiet<'_> {
+    fn cancelled(&self) -> bool {
+        self.0.cancelled()
+    }
+}

@@ -1,0 +1,237 @@
+//! The steps, each from files to a file.
+
+use std::sync::Arc;
+
+use rayon::prelude::*;
+use zeroset::cloud::Cloud;
+use zeroset::constraint::Constraints;
+use zeroset::field::LatticeField;
+use zeroset::mesh::{Mesh, drop_small_components};
+use zeroset::model::{Model, Provenance, Solid};
+use zeroset::monitor::Monitor;
+use zeroset::reconstruct::{ReconstructError, ReconstructParams};
+use zeroset::tile::{Measurement, Strip, TileFit, TileId, TileMesh, TilePlan, merge};
+use zeroset_io::{read_model, write_model};
+
+use crate::field::{read_field, write_field};
+use crate::folder::{create, read_json, write_json};
+use crate::mesh::{read_tile_mesh, write_tile_mesh};
+use crate::pieces::{Piece, drop_small, pieces};
+use crate::{Folder, Sorted, TilesError};
+
+/// How the surface of each tile is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum TileFormat {
+    /// GLB, with a `tileset.json` around them.
+    #[default]
+    Glb,
+    /// PLY in world coordinates.
+    Ply,
+}
+
+impl TileFormat {
+    /// The suffix of the files.
+    #[must_use]
+    pub fn suffix(self) -> &'static str {
+        match self {
+            Self::Glb => "glb",
+            Self::Ply => "ply",
+        }
+    }
+}
+
+/// Spacing, noise and scene are measured on tiles with so many points in all, or on all tiles.
+const SAMPLE: usize = 2_000_000;
+
+impl Folder {
+    /// Resolves every default against the points, or reads the plan that is there.
+    ///
+    /// # Errors
+    /// As for [`TilePlan::new`], or if a file cannot be read or written.
+    pub fn make_plan(&self, sorted: &Sorted, params: &ReconstructParams) -> Result<TilePlan, TilesError> {
+        if let Some(plan) = self.plan()? {
+            return Ok(plan);
+        }
+        let offset = sorted.offset();
+        let mut sample = Cloud { world_from_local: offset, crs: sorted.crs.clone(), ..Cloud::default() };
+        let n = sorted.tiles.len();
+        // Tiles from all over: every so many, round and round.
+        let step = (1..n).find(|&s| s * 1000 > n * 618 && common_divisor(s, n) == 1).unwrap_or(1);
+        for i in 0..n {
+            if sample.len() >= SAMPLE {
+                break;
+            }
+            sample.append(self.load(sorted, sorted.tiles[i * step % n].id, 0)?);
+        }
+        let measured = Measurement {
+            points: usize::try_from(sorted.points).unwrap_or(usize::MAX),
+            bounds: sorted.bounds.map(|corner| std::array::from_fn(|a| corner[a] - offset[a])),
+            sample: &sample,
+            tiles: sorted.tiles.iter().map(|tile| tile.id).collect(),
+        };
+        let plan = TilePlan::new(measured, sorted.side, params)?;
+        write_json(&self.plan_at(), &plan)?;
+        Ok(plan)
+    }
+
+    /// Thins the points of a tile, for coarser levels.
+    ///
+    /// # Errors
+    /// If a file cannot be read or written.
+    pub fn thin(&self, sorted: &Sorted, plan: &TilePlan, tile: TileId) -> Result<(), TilesError> {
+        let last = plan.coarsest_thinning();
+        if last == 0 || self.thinned(tile, last).exists() {
+            return Ok(());
+        }
+        let mut points = self.load(sorted, tile, 0)?;
+        for thinning in 1..=last {
+            points = plan.thin(&points, thinning)?;
+            self.write_thinned(&points, tile, thinning)?;
+        }
+        Ok(())
+    }
+
+    /// Fits the coarse levels of the whole.
+    ///
+    /// # Errors
+    /// If a file cannot be read or written, the fit fails, or the monitor asks to stop.
+    pub fn fit_coarse(
+        &self,
+        sorted: &Sorted,
+        plan: &TilePlan,
+        constraints: &Constraints,
+        monitor: &dyn Monitor,
+    ) -> Result<(), TilesError> {
+        if self.coarse().exists() {
+            return Ok(());
+        }
+        let load = |tile: &TileId| self.load(sorted, *tile, plan.coarse_thinning());
+        let mut points = Cloud { world_from_local: plan.world_from_local, ..Cloud::default() };
+        for part in plan.tiles.par_iter().map(load).collect::<Result<Vec<Cloud>, TilesError>>()? {
+            points.append(Cloud { attributes: Default::default(), ..part });
+        }
+        let (field, _) = plan.coarse(&points, constraints, monitor)?;
+        write_field(&self.coarse(), &field)
+    }
+
+    /// F on the coarse levels.
+    ///
+    /// # Errors
+    /// If it is not there.
+    pub fn read_coarse(&self) -> Result<LatticeField, TilesError> {
+        read_field(&self.coarse())
+    }
+
+    /// Fits a tile.
+    ///
+    /// # Errors
+    /// If a file cannot be read or written, the fit fails, or the monitor asks to stop.
+    pub fn fit_tile(
+        &self,
+        sorted: &Sorted,
+        plan: &TilePlan,
+        tile: TileId,
+        (coarse, constraints): (&LatticeField, &Constraints),
+        monitor: &dyn Monitor,
+    ) -> Result<(), TilesError> {
+        if self.strip(tile).exists() {
+            return Ok(());
+        }
+        create(&self.work().join("fit"))?;
+        let load = |tile, thinning| self.load(sorted, tile, thinning);
+        let Some((fit, _)) = plan.fit(tile, coarse, constraints, load, monitor)? else {
+            return crate::binary::Out::default().write(&self.strip(tile));
+        };
+        let strip = plan.strip(tile, &fit)?;
+        let model = Model {
+            solid: Solid::Fitted(Arc::new(fit.into_fitted())),
+            crs: sorted.crs.clone(),
+            provenance: Provenance { version: env!("CARGO_PKG_VERSION").to_owned(), ..Provenance::default() },
+        };
+        write_model(&self.fitted(tile), &model)?;
+        write_field(&self.strip(tile), strip.field())
+    }
+
+    /// Whether a tile was fitted and there was something to fit.
+    fn has_fit(&self, tile: TileId) -> Result<bool, TilesError> {
+        let path = self.strip(tile);
+        match std::fs::metadata(&path) {
+            Ok(facts) => Ok(facts.len() > 0),
+            Err(source) if source.kind() == std::io::ErrorKind::NotFound => Err(TilesError::Missing { path }),
+            Err(source) => Err(TilesError::system(&path, source)),
+        }
+    }
+
+    /// Extracts the surface of a tile. It and its neighbours must be fitted.
+    ///
+    /// # Errors
+    /// If a file cannot be read or written, or the monitor asks to stop.
+    pub fn mesh_tile(
+        &self,
+        sorted: &Sorted,
+        plan: &TilePlan,
+        tile: TileId,
+        monitor: &dyn Monitor,
+    ) -> Result<(), TilesError> {
+        if self.pieces(tile).exists() {
+            return Ok(());
+        }
+        create(&self.work().join("mesh"))?;
+        let mut mesh = TileMesh { mesh: Mesh::default(), shared: Vec::new() };
+        if self.has_fit(tile)? {
+            let mut strips = Vec::new();
+            for other in plan.neighbors(tile) {
+                if self.has_fit(other)? {
+                    strips.push((other, Strip::new(read_field(&self.strip(other))?)));
+                }
+            }
+            let strips: Vec<(TileId, &Strip)> = strips.iter().map(|(id, strip)| (*id, strip)).collect();
+            let path = self.fitted(tile);
+            let Solid::Fitted(fitted) = read_model(&path)?.solid else { return Err(TilesError::damaged(&path)) };
+            let fit = TileFit::new(Arc::try_unwrap(fitted).map_err(|_| TilesError::damaged(&path))?);
+            let load = |tile, thinning| self.load(sorted, tile, thinning);
+            mesh = plan.mesh(tile, &fit, &strips, load, monitor)?.0;
+        }
+        write_tile_mesh(&self.mesh(tile), &mesh)?;
+        write_json(&self.pieces(tile), &pieces(&mesh))
+    }
+
+    /// The surface of a tile without small pieces. It and its neighbours must be extracted.
+    ///
+    /// # Errors
+    /// If a file cannot be read.
+    pub fn tile_mesh(&self, sorted: &Sorted, plan: &TilePlan, tile: TileId) -> Result<TileMesh, TilesError> {
+        let mut mesh = read_tile_mesh(&self.mesh(tile))?;
+        if let Some(least) = plan.report.min_component {
+            let mut around: Vec<Vec<Piece>> = Vec::new();
+            for other in plan.neighbors(tile) {
+                around.push(read_json(&self.pieces(other))?);
+            }
+            drop_small(&mut mesh, &around, least as u64);
+        }
+        mesh.mesh.crs.clone_from(&sorted.crs);
+        Ok(mesh)
+    }
+
+    /// All tiles as one mesh.
+    ///
+    /// # Errors
+    /// If a file cannot be read, or there is no surface.
+    pub fn merged(&self, sorted: &Sorted, plan: &TilePlan) -> Result<Mesh, TilesError> {
+        let mut tiles = Vec::new();
+        for &tile in &plan.tiles {
+            tiles.push(read_tile_mesh(&self.mesh(tile))?);
+        }
+        let mut mesh = merge(tiles);
+        mesh.crs.clone_from(&sorted.crs);
+        mesh.world_from_local = plan.world_from_local;
+        if let Some(least) = plan.report.min_component {
+            drop_small_components(&mut mesh, least);
+        }
+        if mesh.triangles.is_empty() { Err(ReconstructError::NoSurface.into()) } else { Ok(mesh) }
+    }
+}
+
+fn common_divisor(a: usize, b: usize) -> usize {
+    if b == 0 { a } else { common_divisor(b, a % b) }
+}
