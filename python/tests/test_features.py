@@ -56,7 +56,7 @@ def test_points_of_files(tmp_path: Path) -> None:
 
 def test_parameters_are_looked_at() -> None:
     points = zeroset.sample("box", points=1000)
-    with pytest.raises(zeroset.ParameterError, match="sharp angle of 120"):
+    with pytest.raises(zeroset.ParameterError, match="sharp angle of 1.*; give an angle between 0 and 90 degrees"):
         zeroset.features(points, sharp_angle=120.0)
     with pytest.raises(zeroset.ParameterError, match="no scene is called 'house'"):
         zeroset.sample("house")  # type: ignore[arg-type]

@@ -225,8 +225,8 @@ def fit(
     --------
     >>> import zeroset
     >>> torus = zeroset.fit(zeroset.sample("torus", points=5000), quality="draft")
-    >>> bool(torus([[1.0, 0.0, 0.0]])[0] < 0.0)
-    True
+    >>> torus.contains([[0.35, 0.0, 0.0], [0.0, 0.0, 0.0]])
+    array([ True, False])
     """
     options: dict[str, Any] = dict(locals())
     options["constraints"] = _files(constraints)

@@ -50,7 +50,9 @@ fn read<'py, T: Element>(
     let kind: String = given.dtype().getattr("kind")?.extract()?;
     if !kinds.contains(&kind) {
         let given = given.dtype();
-        return Err(Failure::input(format!("{name} are of type {given}; give {dtype}, or what NumPy can make it of")).into());
+        return Err(
+            Failure::input(format!("{name} are of type {given}; give {dtype}, or what NumPy can make it of")).into()
+        );
     }
     if !fits(given.shape()) {
         let given: String = array.getattr("shape")?.str()?.extract()?;
@@ -125,11 +127,7 @@ pub(crate) fn attributes(
         check_bytes(object, "classes")?;
         Ok(array.as_slice()?.to_vec())
     });
-    Ok(Attributes {
-        colors: colors.transpose()?,
-        intensities: intensities.transpose()?,
-        classes: classes.transpose()?,
-    })
+    Ok(Attributes { colors: colors.transpose()?, intensities: intensities.transpose()?, classes: classes.transpose()? })
 }
 
 /// Refuses numbers that a byte does not hold.

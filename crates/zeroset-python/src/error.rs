@@ -118,7 +118,10 @@ impl From<FieldError> for Failure {
 
 impl From<SolidError> for Failure {
     fn from(error: SolidError) -> Self {
-        Self::new("ModelError", error.to_string())
+        match error {
+            SolidError::File(error) => error.into(),
+            other => Self::new("ModelError", other.to_string()),
+        }
     }
 }
 

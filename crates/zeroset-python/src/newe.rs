@@ -23,10 +23,8 @@ pub(crate) fn newe<'py>(
     };
     let mut params = NeweParams {
         flats,
-        normalization: options.word(
-            "normalization",
-            &[("affine", Normalization::Affine), ("homogeneous", Normalization::Homogeneous)],
-        )?,
+        normalization: options
+            .word("normalization", &[("affine", Normalization::Affine), ("homogeneous", Normalization::Homogeneous)])?,
         starts: options.get("starts")?,
         noise: options.get("noise")?,
         seed: options.get("seed")?,
@@ -38,7 +36,10 @@ pub(crate) fn newe<'py>(
     match width {
         2 => run::<2>(points, &params, options),
         3 => run::<3>(points, &params, options),
-        _ => Err(Failure::input(format!("points of {width} coordinates; give an array of shape (n, 2) or (n, 3)")).into()),
+        _ => {
+            Err(Failure::input(format!("points of {width} coordinates; give an array of shape (n, 2) or (n, 3)"))
+                .into())
+        }
     }
 }
 

@@ -75,8 +75,16 @@ impl Choices {
             ("shift-invert", Solver::ShiftInvert),
             ("lobpcg", Solver::Lobpcg),
         ];
-        let kinds =
-            ["p1", "p2", "gaussian", "multiquadric", "inverse-multiquadric", "thin-plate", "wendland-c2", "wendland-c4"];
+        let kinds = [
+            "p1",
+            "p2",
+            "gaussian",
+            "multiquadric",
+            "inverse-multiquadric",
+            "thin-plate",
+            "wendland-c2",
+            "wendland-c4",
+        ];
         let order: usize = options.get("order")?;
         if order > 2 {
             return Err(Failure::parameter(format!("order of {order} is not known; give 0, 1 or 2")).into());
@@ -344,7 +352,9 @@ pub(crate) fn normalized_fit(
             let count = given.points.len() + given.segments.len();
             match domain {
                 Domain::Lattice(bounds) => lattice(bounds.map_or_else(|| given.bounds(), Ok)?, choices, count),
-                Domain::Four(_) => Err(Failure::parameter("four triangles lie in the plane; give points of shape (n, 2)")),
+                Domain::Four(_) => {
+                    Err(Failure::parameter("four triangles lie in the plane; give points of shape (n, 2)"))
+                }
                 Domain::Simplices(vertices, simplices) => {
                     SimplicialMesh::from_tetrahedra(vertices, &rows(simplices)?).map_err(broken)
                 }
@@ -388,8 +398,7 @@ impl<const D: usize> Kept<D> {
         dict.set_item("smoothness", self.smoothness)?;
         let warnings = fitted.diagnosis.warnings.iter().map(ToString::to_string);
         dict.set_item("warnings", warnings.collect::<Vec<_>>())?;
-        let nodes: Vec<[f64; D]> =
-            (0..self.basis.len()).map(|j| self.basis.node(j).unwrap_or([f64::NAN; D])).collect();
+        let nodes: Vec<[f64; D]> = (0..self.basis.len()).map(|j| self.basis.node(j).unwrap_or([f64::NAN; D])).collect();
         dict.set_item("nodes", table(py, nodes)?)?;
         Ok(dict)
     }

@@ -3,11 +3,13 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use numpy::{PyArray1, PyArray2, IntoPyArray};
+use numpy::{IntoPyArray, PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use zeroset::field::Placement;
-use zeroset::model::{MeshParams, Model, Provenance, Solid as Tree, VolumeParams, cut_and_fill, evaluate, mesh, volume};
+use zeroset::model::{
+    MeshParams, Model, Provenance, Solid as Tree, VolumeParams, cut_and_fill, evaluate, mesh, volume,
+};
 use zeroset_io::{SolidFiles, is_model, read_model, write_model};
 
 use crate::arrays::{check_finite, dictionary, points, positions, table};
@@ -242,7 +244,8 @@ impl Solid {
     fn change<'py>(&self, before: &Self, options: &Bound<'py, PyDict>) -> PyResult<Bound<'py, PyDict>> {
         let (py, options) = (options.py(), Options(options));
         let params = measure(&options)?;
-        let work = |monitor: &dyn zeroset::monitor::Monitor| cut_and_fill(&before.0.solid, &self.0.solid, &params, monitor);
+        let work =
+            |monitor: &dyn zeroset::monitor::Monitor| cut_and_fill(&before.0.solid, &self.0.solid, &params, monitor);
         let found = options.running()?.run(py, work)?;
         let dict = PyDict::new(py);
         for (name, volume) in [("cut", found.cut), ("fill", found.fill), ("net", found.net)] {

@@ -99,11 +99,7 @@ impl Running<'_> {
     ///
     /// # Errors
     /// What the work says; `KeyboardInterrupt` after Ctrl-C; whatever the callback raises.
-    pub(crate) fn run<T, E>(
-        self,
-        py: Python<'_>,
-        work: impl FnOnce(&dyn Monitor) -> Result<T, E> + Send,
-    ) -> PyResult<T>
+    pub(crate) fn run<T, E>(self, py: Python<'_>, work: impl FnOnce(&dyn Monitor) -> Result<T, E> + Send) -> PyResult<T>
     where
         T: Send,
         E: Into<Failure> + Send,
@@ -155,8 +151,8 @@ fn look(py: Python<'_>, callback: Option<&Py<PyAny>>, news: Vec<(String, f64)>) 
 
 /// So many threads of their own.
 fn pool(threads: usize) -> PyResult<rayon::ThreadPool> {
-    let threads =
-        NonZeroUsize::new(threads).ok_or_else(|| Failure::parameter("0 threads do nothing; give 1 or more, or None"))?;
+    let threads = NonZeroUsize::new(threads)
+        .ok_or_else(|| Failure::parameter("0 threads do nothing; give 1 or more, or None"))?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.get()).build();
     pool.map_err(|why| Failure::parameter(format!("{threads} threads cannot be started: {why}; give fewer")).into())
 }
