@@ -28,23 +28,23 @@ def public() -> Iterator[tuple[str, Any]]:
         yield f"zeroset.{name}", thing
         if inspect.isclass(thing):
             for member, value in vars(thing).items():
+                if issubclass(thing, tuple):
+                    continue
                 own = inspect.isroutine(value) or isinstance(value, (property, classmethod)) or hasattr(value, "func")
                 if own and (not member.startswith("_") or member in {"__call__", "__or__", "__and__", "__sub__", "__invert__"}):
                     yield f"zeroset.{name}.{member}", value
 
 
+# What the package makes and users only read: fields are told under Attributes.
+RECORDS = {"Cloud", "Plane", "Edge", "Corner", "Newe", "Volume", "Change"}
+
+
 @pytest.mark.parametrize("name", [name for name, _ in public()])
 def test_it_is_documented(name: str) -> None:
-    generated = {"_asdict", "_replace", "_make", "count", "index"}
-    if name.rsplit(".", 1)[-1] in generated or name.startswith(("zeroset.Volume.", "zeroset.Change.")):
-        return
-    found = validate(name)
-    thing: Any = found
-    wrong = [f"{code}: {text}" for code, text in thing["errors"] if code in RULES]
-    # Fields of these are told under Attributes; they are not made by users.
-    plain = name.rsplit(".", 1)[-1] in {"Cloud", "Plane", "Edge", "Corner", "Newe", "Volume", "Change"}
-    assert not wrong or plain, wrong
-    assert thing["docstring"].strip()
+    found: dict[str, Any] = validate(name)
+    rules = {"GL08", "SS01"} if name.split(".")[1] in RECORDS else RULES
+    wrong = [f"{code}: {text}" for code, text in found["errors"] if code in rules]
+    assert not wrong, wrong
 
 
 @pytest.mark.parametrize(("name", "thing"), list(public()), ids=[name for name, _ in public()])

@@ -180,7 +180,8 @@ class Model:
         Parameters
         ----------
         points : array_like of shape (n, 3)
-            World positions. C-contiguous float64 is read where it lies; others are converted once.
+            World positions. C-contiguous float64 is read where it lies; others are converted once. Do not write to the array from
+            another thread meanwhile.
 
         Returns
         -------

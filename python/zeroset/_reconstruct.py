@@ -58,8 +58,8 @@ def reconstruct(
     Parameters
     ----------
     points : array_like of shape (n, 3)
-        World positions. C-contiguous float64 is read where it lies; other numbers and layouts are converted once. Do not write to
-        the array from another thread meanwhile.
+        World positions. C-contiguous float64 is read where it lies; other numbers and layouts are converted once. It is
+        no longer looked at once the work begins.
     scene : {"auto", "object", "terrain", "airborne", "free"}
         What is known: a closed body; ground and what stands on it; the same scanned from above; nothing. ``"auto"`` decides from
         the shape of the cloud, and never for ``"airborne"`` or ``"free"``.
