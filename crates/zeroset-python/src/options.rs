@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use pyo3::exceptions::{PyOverflowError, PyTypeError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use zeroset::constraint::Constraints;
@@ -42,13 +43,13 @@ impl<'py> Options<'_, 'py> {
         let value = self.object(name)?;
         let extracted = value.extract().map_err(Into::into);
         extracted.map_err(|why: PyErr| {
-            let kind = value.get_type();
-            let class = if why.is_instance_of::<pyo3::exceptions::PyOverflowError>(value.py()) {
+            if why.is_instance_of::<PyOverflowError>(value.py()) {
                 return Failure::parameter(format!("{name} of {value} is out of range")).into();
-            } else {
-                kind.name().map_or_else(|_| String::new(), |name| name.to_string())
-            };
-            pyo3::exceptions::PyTypeError::new_err(format!("{name} cannot be of type {class}"))
+            }
+            match value.get_type().name() {
+                Ok(class) => PyTypeError::new_err(format!("{name} cannot be of type {class}")),
+                Err(error) => error,
+            }
         })
     }
 

@@ -35,12 +35,12 @@ impl Solid {
     }
 
     /// Another solid made of this one, and perhaps of a second.
-    fn made(&self, other: Option<&Self>, solid: Tree) -> PyResult<Self> {
+    fn made(&self, other: Option<&Self>, solid: Tree) -> Self {
         let other = other.map(|other| &other.0);
         let crs = self.0.crs.clone().or_else(|| other.and_then(|other| other.crs.clone()));
         let mut provenance = self.0.provenance.clone();
         provenance.inputs.extend(other.into_iter().flat_map(|other| other.provenance.inputs.iter().cloned()));
-        Ok(Self(Model { solid, crs, provenance }))
+        Self(Model { solid, crs, provenance })
     }
 
     fn tree(&self) -> Tree {
@@ -156,22 +156,22 @@ impl Solid {
     }
 
     #[pyo3(signature = (other: "Solid") -> "Solid")]
-    fn union(&self, other: &Self) -> PyResult<Self> {
+    fn union(&self, other: &Self) -> Self {
         self.made(Some(other), union(self.tree(), other.tree()))
     }
 
     #[pyo3(signature = (other: "Solid") -> "Solid")]
-    fn intersection(&self, other: &Self) -> PyResult<Self> {
+    fn intersection(&self, other: &Self) -> Self {
         self.made(Some(other), intersection(self.tree(), other.tree()))
     }
 
     #[pyo3(signature = (other: "Solid") -> "Solid")]
-    fn difference(&self, other: &Self) -> PyResult<Self> {
+    fn difference(&self, other: &Self) -> Self {
         self.made(Some(other), difference(self.tree(), other.tree()))
     }
 
     #[pyo3(signature = () -> "Solid")]
-    fn complement(&self) -> PyResult<Self> {
+    fn complement(&self) -> Self {
         match self.tree() {
             Tree::Complement(of) => self.made(None, *of),
             tree => self.made(None, Tree::Complement(Box::new(tree))),
@@ -180,18 +180,17 @@ impl Solid {
 
     #[pyo3(signature = (other: "Solid", radius) -> "Solid")]
     fn smooth_union(&self, other: &Self, radius: f64) -> PyResult<Self> {
-        let made = self.made(Some(other), Tree::SmoothUnion { of: Box::new([self.tree(), other.tree()]), radius })?;
-        made.checked()
+        self.made(Some(other), Tree::SmoothUnion { of: Box::new([self.tree(), other.tree()]), radius }).checked()
     }
 
     #[pyo3(signature = (distance) -> "Solid")]
     fn offset(&self, distance: f64) -> PyResult<Self> {
-        self.made(None, Tree::Offset { of: Box::new(self.tree()), distance })?.checked()
+        self.made(None, Tree::Offset { of: Box::new(self.tree()), distance }).checked()
     }
 
     #[pyo3(signature = (thickness) -> "Solid")]
     fn shell(&self, thickness: f64) -> PyResult<Self> {
-        self.made(None, Tree::Shell { of: Box::new(self.tree()), thickness })?.checked()
+        self.made(None, Tree::Shell { of: Box::new(self.tree()), thickness }).checked()
     }
 
     /// Turned about an axis through `about`, then scaled about it, then moved.
@@ -199,7 +198,7 @@ impl Solid {
     fn placed(&self, axis: [f64; 3], angle: f64, about: [f64; 3], scale: f64, by: [f64; 3]) -> PyResult<Self> {
         let placement = || Placement::default().turned(axis, angle, about)?.scaled(scale, about)?.moved(by);
         let placement = placement().map_err(Failure::from)?;
-        self.made(None, Tree::Placed { of: Box::new(self.tree()), placement })
+        Ok(self.made(None, Tree::Placed { of: Box::new(self.tree()), placement }))
     }
 
     /// F and its gradient.
