@@ -4,9 +4,14 @@
 //! |---|---|
 //! | `check` | formatting, lints and documentation, all with warnings as errors |
 //! | `man DIR` | the manual pages of the command, written into a folder |
+//! | `python` | the Python package: built in place, its types checked, its tests run |
+//! | `stubs` | writes the types of the module `zeroset._core` |
 //!
 //! The exit code is 0 if all went well, 1 if a step failed, and 2 for wrong usage.
 
+mod python;
+
+use std::path::Path;
 use std::process::{Command, ExitCode};
 
 const USAGE: &str = "\
@@ -14,7 +19,9 @@ Usage: cargo xtask CHORE
 
 Chores:
   check    formatting, lints and documentation, all with warnings as errors
-  man DIR  the manual pages of the command, written into a folder";
+  man DIR  the manual pages of the command, written into a folder
+  python   the Python package: built in place, its types checked, its tests run
+  stubs    writes the types of the module `zeroset._core`";
 
 /// One run of cargo.
 struct Step<'a> {
@@ -40,6 +47,8 @@ fn main() -> ExitCode {
     let outcome = match words[..] {
         [Some("check")] => CHECK.iter().try_for_each(run),
         [Some("man"), Some(folder)] => man(folder),
+        [Some("python")] => python::test(),
+        [Some("stubs")] => python::types(python::Types::Write),
         [Some("help" | "-h" | "--help")] => {
             println!("{USAGE}");
             Ok(())
@@ -66,6 +75,11 @@ fn man(folder: &str) -> Result<(), String> {
     run(&Step { arguments: &arguments, environment: &[] })
 }
 
+/// The root of the repository.
+fn root() -> &'static Path {
+    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
+}
+
 /// Runs a step in the root of the repository; the error says which one failed.
 fn run(step: &Step<'_>) -> Result<(), String> {
     // Cargo tells its children which cargo it is. A built xtask called by hand takes the one on the path.
@@ -75,7 +89,7 @@ fn run(step: &Step<'_>) -> Result<(), String> {
     let status = Command::new(cargo)
         .args(step.arguments)
         .envs(step.environment.iter().copied())
-        .current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
+        .current_dir(root())
         .status()
         .map_err(|e| format!("`{line}` cannot be started: {e}"))?;
     if status.success() { Ok(()) } else { Err(format!("`{line}` failed: {status}")) }

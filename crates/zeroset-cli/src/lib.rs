@@ -23,7 +23,7 @@ mod fit2d;
 mod info;
 mod input;
 mod interrupt;
-mod memory;
+pub mod memory;
 mod model;
 mod progress;
 mod reconstruct;
@@ -50,31 +50,39 @@ use error::CliError;
 /// Exit code of a command that was interrupted: 128 and the number of SIGINT.
 const INTERRUPTED: u8 = 130;
 
+/// Exit code of a command that could not do what it was asked to.
+const FAILED: u8 = 1;
+
 /// Exit code for options that have no meaning together, as for those that the parser refuses.
 const WRONG_USAGE: u8 = 2;
 
 /// Runs the command with the given words, of which the first is the program's own name.
 pub fn main(words: impl IntoIterator<Item = OsString>) -> ExitCode {
+    ExitCode::from(exit_code(words))
+}
+
+/// The same for programs that end by themselves; returns the exit code. Listens for Ctrl-C from then on.
+pub fn exit_code(words: impl IntoIterator<Item = OsString>) -> u8 {
     let args = match Args::try_parse_from(words) {
         Ok(args) => args,
         Err(message) => {
             // Help for a pager that has gone is no failure.
             let _ = message.print();
-            return u8::try_from(message.exit_code()).map_or(ExitCode::FAILURE, ExitCode::from);
+            return u8::try_from(message.exit_code()).unwrap_or(FAILED);
         }
     };
     interrupt::install();
     match run(args.command) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) if error.is_broken_pipe() => ExitCode::SUCCESS,
+        Ok(()) => 0,
+        Err(error) if error.is_broken_pipe() => 0,
         Err(_) if interrupt::requested() => {
             zeroset_io::abandon_writes();
             Console::complain(interrupt::STOPPED);
-            ExitCode::from(INTERRUPTED)
+            INTERRUPTED
         }
         Err(error) => {
             Console::complain(&format!("error: {error}"));
-            if matches!(error, CliError::Usage(_)) { ExitCode::from(WRONG_USAGE) } else { ExitCode::FAILURE }
+            if matches!(error, CliError::Usage(_)) { WRONG_USAGE } else { FAILED }
         }
     }
 }

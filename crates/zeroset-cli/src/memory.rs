@@ -5,7 +5,8 @@
 const SHARE: f64 = 0.7;
 
 /// The default limit in bytes: a share of the memory that is free, in this process's control group if that has less.
-pub(crate) fn default_limit() -> u64 {
+#[must_use]
+pub fn default_limit() -> u64 {
     let mut system = sysinfo::System::new();
     system.refresh_memory();
     let free = system.available_memory();
