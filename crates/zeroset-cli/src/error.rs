@@ -41,6 +41,12 @@ pub(crate) enum CliError {
         /// The option.
         option: &'static str,
     },
+    /// All points were left out.
+    #[error("{inputs}: no points are left to make tiles of; check --bounds, --classes and --exclude")]
+    NoPointsForTiles {
+        /// The inputs, in words.
+        inputs: String,
+    },
     /// More tiles at a time than memory is there for.
     #[error(
         "{jobs} tiles of {side} at a time need about {needed_gb:.1} GB, more than the {allowed_gb:.1} GB at hand; give fewer --jobs, a shorter --tile, or more --memory"

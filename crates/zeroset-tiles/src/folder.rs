@@ -66,6 +66,16 @@ impl Folder {
         remove(&self.work())
     }
 
+    /// Removes what was begun, where it is not worth going on from; and the folder, if nothing else is in it.
+    pub fn abandon(&self) {
+        // Whatever stays is seen by the next run, which says so.
+        let _ = self.remove_work();
+        for file in ["run.json", "sorted.json", "plan.json"] {
+            let _ = std::fs::remove_file(self.path.join(file));
+        }
+        let _ = std::fs::remove_dir(&self.path);
+    }
+
     /// Removes the folder with all that is in it.
     ///
     /// # Errors

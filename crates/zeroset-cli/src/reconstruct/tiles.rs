@@ -15,9 +15,11 @@ use zeroset_tiles::{
     Crew, Folder, RunParams, Sorted, TileEntry, TileFormat, TileSeconds, TilesError, run, write_tiles,
 };
 
+use super::failed;
 use crate::args::{OrOff, ReconstructArgs, TileFormatChoice};
 use crate::console::Console;
-use crate::error::CliError;
+
+use crate::error::{CliError, in_words};
 use crate::input::filter;
 use crate::memory;
 use crate::progress::with_progress;
@@ -75,20 +77,43 @@ pub(super) fn reconstruct(
     constraints: Constraints,
     console: Console,
 ) -> Result<(), CliError> {
-    let start = Instant::now();
     refuse(args)?;
     let output = args.output.clone().unwrap_or_default();
-    let merged = (!is_folder(&output)).then_some(&output);
-    let place = merged.map_or_else(|| output.clone(), |file| beside(file));
-    let threads = rayon::current_num_threads();
+    let merged = (!is_folder(&output)).then_some(&*output);
+    let place = merged.map_or_else(|| output.clone(), beside);
     let unit = unit(args)?;
     let folder = Folder::open(&place, &described(args))?;
+    make(args, (params, constraints), &folder, (&output, merged), unit, console).map_err(|error| {
+        // Nothing that is worth going on from: the next run may ask for something else.
+        if folder.plan().is_ok_and(|plan| plan.is_none()) {
+            folder.abandon();
+        }
+        match error {
+            CliError::Tiles(TilesError::Reconstruct(source)) => failed(&args.input, source),
+            CliError::Tiles(TilesError::NoPoints) => {
+                CliError::NoPointsForTiles { inputs: in_words(&args.input.inputs) }
+            }
+            other => other,
+        }
+    })
+}
+
+fn make(
+    args: &ReconstructArgs,
+    (params, constraints): (ReconstructParams, Constraints),
+    folder: &Folder,
+    (output, merged): (&Path, Option<&Path>),
+    unit: Option<LinearUnit>,
+    console: Console,
+) -> Result<(), CliError> {
+    let start = Instant::now();
+    let threads = rayon::current_num_threads();
     let sorted = match folder.sorted()? {
         Some(sorted) => sorted,
         None => {
             let measure = || measured(args, &params, threads);
             let side = side(args, unit, measure)?;
-            with_progress(console, |progress| sort(args, &params, &folder, side, progress))??
+            with_progress(console, |progress| sort(args, &params, folder, side, progress))??
         }
     };
     let sort_seconds = start.elapsed().as_secs_f64();
@@ -105,7 +130,7 @@ pub(super) fn reconstruct(
     let params = ReconstructParams { constraints, ..params };
     let run_params = RunParams { reconstruct: params, jobs, threads, format };
     let (plan, seconds, entries) = with_progress(console, |progress| -> Result<_, CliError> {
-        let (plan, mut seconds) = run(&folder, &sorted, &run_params, progress)?;
+        let (plan, mut seconds) = run(folder, &sorted, &run_params, progress)?;
         let begun = Instant::now();
         let entries = match merged {
             Some(file) => {
@@ -117,7 +142,7 @@ pub(super) fn reconstruct(
             }
             None => {
                 let crew = Crew { jobs, threads, monitor: progress };
-                write_tiles(&folder, &sorted, &plan, format, &crew)?
+                write_tiles(folder, &sorted, &plan, format, &crew)?
             }
         };
         seconds.write = begun.elapsed().as_secs_f64();
@@ -132,7 +157,7 @@ pub(super) fn reconstruct(
     let total_seconds = start.elapsed().as_secs_f64();
     console.say(&format!(
         "{}: {}{} tiles of {} from {} points (resolution {}) in {} s",
-        shown(&output),
+        shown(output),
         if merged.is_some() { String::new() } else { format!("{} triangles in ", count(triangles as usize)) },
         count(plan.tiles.len()),
         significant(plan.side, 4),

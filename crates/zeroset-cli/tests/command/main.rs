@@ -12,4 +12,5 @@ mod measure;
 mod models;
 mod reconstruct;
 mod simplify;
+mod tiles;
 mod usage;

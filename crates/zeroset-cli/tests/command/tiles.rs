@@ -1,0 +1,163 @@
+//! Tiles in a folder.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::Duration;
+
+use serde_json::Value;
+use zeroset::mesh::topology;
+use zeroset_io::read_mesh;
+
+use crate::common::{folder, line};
+
+/// A city around the origin in two files, so that four tiles meet in its midst.
+fn city(place: &Path) {
+    line(place, "sample airborne-city -o city.xyz --points 24000").ok();
+    let text = std::fs::read_to_string(place.join("city.xyz")).unwrap();
+    let moved = |line: &str| {
+        let c: Vec<f64> = line.split(' ').map(|c| c.parse().unwrap()).collect();
+        format!("{} {} {}\n", c[0] - 0.45, c[1] - 0.45, c[2])
+    };
+    let lines: Vec<String> = text.lines().map(moved).collect();
+    std::fs::write(place.join("a.xyz"), lines[..10_000].concat()).unwrap();
+    std::fs::write(place.join("b.xyz"), lines[10_000..].concat()).unwrap();
+}
+
+const RUN: &str = "reconstruct a.xyz b.xyz --tile 1.1 --resolution 0.008 --quality draft --scene airborne -q";
+
+/// All files below a folder, by their names.
+fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut all = BTreeMap::new();
+    let mut open = vec![folder.to_path_buf()];
+    while let Some(place) = open.pop() {
+        for entry in std::fs::read_dir(place).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                open.push(path);
+            } else {
+                let name = path.strip_prefix(folder).unwrap().to_string_lossy().into_owned();
+                all.insert(name, std::fs::read(&path).unwrap());
+            }
+        }
+    }
+    all
+}
+
+#[test]
+fn tiles_meet_bit_for_bit_and_their_lists_tell_of_them() {
+    let folder = folder();
+    city(folder.path());
+    line(folder.path(), &format!("{RUN} -o out/ --jobs 2")).ok();
+    let made = files(&folder.path().join("out"));
+    let names: Vec<&str> = made.keys().map(String::as_str).collect();
+    let tiles = ["tiles/-1_-1.glb", "tiles/-1_0.glb", "tiles/0_-1.glb", "tiles/0_0.glb"];
+    let lists = ["plan.json", "run.json", "sorted.json"];
+    assert_eq!(names, [&lists[..], &["tiles.json"], &tiles[..], &["tileset.json"]].concat());
+    let tileset: Value = serde_json::from_slice(&made["tileset.json"]).unwrap();
+    let children = tileset["root"]["children"].as_array().unwrap();
+    assert_eq!((tileset["asset"]["version"].as_str(), children.len()), (Some("1.1"), 4));
+    let outlines: Value = serde_json::from_slice(&made["tiles.json"]).unwrap();
+    let points: u64 =
+        outlines["features"].as_array().unwrap().iter().map(|f| f["properties"]["points"].as_u64().unwrap()).sum();
+    assert_eq!(points, 24_000);
+
+    // Vertices of rims beside a face, in world coordinates: those of one side are those of the other.
+    let rim = |name: &str, axis: usize| -> BTreeSet<[u64; 3]> {
+        let mesh = read_mesh(&folder.path().join("out").join(name)).unwrap();
+        let mut sides: BTreeMap<[u32; 2], usize> = BTreeMap::new();
+        for t in &mesh.triangles {
+            for i in 0..3 {
+                let (a, b) = (t[i], t[(i + 1) % 3]);
+                *sides.entry([a.min(b), a.max(b)]).or_default() += 1;
+            }
+        }
+        let ends = sides.into_iter().filter(|(_, count)| *count == 1).flat_map(|(ends, _)| ends);
+        let world = ends
+            .map(|v| -> [f64; 3] { std::array::from_fn(|a| mesh.vertices[v as usize][a] + mesh.world_from_local[a]) });
+        // Not beside the corner, where other tiles come in.
+        let near = world.filter(|p| p[axis].abs() < 0.016 && p[1 - axis].abs() > 0.05 && p[1 - axis].abs() < 0.4);
+        near.map(|p| p.map(|c| (c + 0.0).to_bits())).collect()
+    };
+    for (one, other, axis) in [(0, 2, 0), (1, 3, 0), (0, 1, 1), (2, 3, 1)] {
+        let (one, other) = (rim(tiles[one], axis), rim(tiles[other], axis));
+        assert!(one.len() > 50, "{}", one.len());
+        assert!(
+            one == other,
+            "{} of {} and {} differ",
+            one.symmetric_difference(&other).count(),
+            one.len(),
+            other.len()
+        );
+    }
+
+    // One mesh of all has no seam, whatever the number of tiles at a time.
+    line(folder.path(), &format!("{RUN} -o one.ply --jobs 1 --threads 1")).ok();
+    line(folder.path(), &format!("{RUN} -o two.ply --jobs 2")).ok();
+    let [one, two] = ["one.ply", "two.ply"].map(|name| std::fs::read(folder.path().join(name)).unwrap());
+    assert!(one == two && !folder.path().join("one.ply.tiles").exists());
+    let found = topology(&read_mesh(&folder.path().join("one.ply")).unwrap()).unwrap();
+    assert_eq!((found.nonmanifold_edges, found.duplicate_triangles), (0, 0));
+}
+
+#[test]
+fn a_run_that_is_killed_goes_on_and_ends_with_the_same_bits() {
+    let folder = folder();
+    city(folder.path());
+    line(folder.path(), &format!("{RUN} -o whole/ --keep-work")).ok();
+    let whole = files(&folder.path().join("whole"));
+    let words: Vec<String> = format!("{RUN} -o killed/ --keep-work").split(' ').map(str::to_owned).collect();
+    let mut kills = 0;
+    for attempt in 0.. {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_zeroset"))
+            .args(&words)
+            .current_dir(folder.path())
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        // Later each time, so that every step is hit sooner or later, and the last run ends.
+        std::thread::sleep(Duration::from_millis(40 + 130 * attempt));
+        if let Some(status) = child.try_wait().unwrap() {
+            assert!(status.success());
+            break;
+        }
+        child.kill().unwrap();
+        child.wait().unwrap();
+        kills += 1;
+    }
+    assert!(kills >= 3, "{kills}");
+    let mut killed = files(&folder.path().join("killed"));
+    // What an interrupted write leaves behind is no result.
+    killed.retain(|name, _| !name.rsplit('/').next().unwrap().starts_with(".zeroset-"));
+    assert_eq!(killed.keys().collect::<Vec<_>>(), whole.keys().collect::<Vec<_>>());
+    for (name, bytes) in &whole {
+        assert!(killed[name] == *bytes, "{name}");
+    }
+}
+
+#[test]
+fn folders_and_options_that_do_not_fit_are_refused_in_one_line() {
+    let folder = folder();
+    city(folder.path());
+    std::fs::create_dir(folder.path().join("full")).unwrap();
+    std::fs::write(folder.path().join("full/mine.txt"), "mine").unwrap();
+    let refused = |options: &str, words: &[&str]| {
+        let said = line(folder.path(), &format!("reconstruct a.xyz {options} -q")).failed(words[0]);
+        assert!(words.iter().all(|word| said.contains(word)), "{said}");
+    };
+    refused("-o full/ --tile 1.1 --resolution 0.008", &["full", "is not empty", "new folder"]);
+    assert_eq!(std::fs::read(folder.path().join("full/mine.txt")).unwrap(), b"mine");
+    refused("-o out/ --tile 0.1 --resolution 0.008", &["a.xyz", "narrow", "--tile 1.0"]);
+    assert!(!folder.path().join("out").exists());
+    refused("-o other/ --tile 1.1 --resolution 0.008 --scene object", &["a.xyz", "--scene terrain"]);
+    refused("-o feet/ --tile 1.1ft --resolution 0.008", &["a.xyz", "unit", "--tile"]);
+    refused("-o some/ --tile 1.1 --outliers 8", &["--outliers"]);
+    refused("-o none/ --tile 1.1 --bounds 7,7,8,8", &["a.xyz", "no points"]);
+    line(
+        folder.path(),
+        "reconstruct a.xyz -o begun/ --tile 1.1 --resolution 0.008 --quality draft --scene airborne -q",
+    )
+    .ok();
+    refused("-o begun/ --tile 1.1 --resolution 0.01", &["begun", "other inputs or options"]);
+}
