@@ -79,4 +79,5 @@ pub(crate) use detect::detect_with;
 pub(crate) use facets::{Facets, Flat, NearFacet, Patch};
 pub use model::{Corner, Edge, FeatureClass, FeatureKind, Features, Plane, PointFeature};
 pub use params::{FeatureError, FeatureParams, FeatureReport, FeatureSeconds, Posture};
+pub(crate) use prepare::farthest_from_planes;
 pub use triangulate::triangulate;

@@ -13,10 +13,11 @@ use crate::domain::{block_key, bounds};
 use crate::field::LatticeField;
 use crate::fit::Frame;
 use crate::fit::cascade::Scene;
-use crate::monitor::Monitor;
+use crate::monitor::{Cancelled, Monitor, Steps};
 use crate::reconstruct::{
     AttributeChoice, Plan, PlanReport, ReconstructError, ReconstructParams, Resolution, Trim, plan,
 };
+use crate::spatial::PointTree;
 use crate::vec3::{self, Vec3};
 
 /// The points in an order that does not depend on the order of the cloud, each position once, near the origin.
@@ -147,11 +148,25 @@ const LEAST_NOISE: f64 = 0.02;
 /// The largest angle between a plane and the surface around its points. Near an edge of 90 degrees the normals turn by half of it.
 const MAX_ANGLE_DEG: f64 = 40.0;
 
+/// The noise of what is flat: the noise of all points, but no more than some times that of the flattest of them.
+fn noise_of_planes(plan: &PlanReport, around: &Surroundings) -> f64 {
+    let flattest = around.flattest().map_or(f64::INFINITY, |noise| MOST_NOISE * noise);
+    plan.noise.min(flattest).max(LEAST_NOISE * plan.spacing)
+}
+
+/// How far a point lies from its plane at most, as it is measured on a cloud. Where planes are looked for in parts of it, all of them are to use the same.
+pub(crate) fn farthest_from_planes(cloud: &Cloud, plan: &PlanReport, monitor: &dyn Monitor) -> Result<f64, Cancelled> {
+    let sorted = Sorted::new(cloud);
+    let tree = PointTree::new(&sorted.points);
+    let steps = Steps::new(monitor, 0.0..1.0, sorted.points.len());
+    let around = Surroundings::new(&sorted.points, &tree, grain(plan.spacing, plan.noise) / plan.spacing, &steps)?;
+    Ok(FARTHEST * noise_of_planes(plan, &around))
+}
+
 impl Resolved {
     pub(super) fn new(params: &FeatureParams, fitted: &Fitted<'_>, around: &Surroundings) -> Self {
         let spacing = fitted.plan.spacing;
-        let flattest = around.flattest().map_or(f64::INFINITY, |noise| MOST_NOISE * noise);
-        let noise = fitted.plan.noise.min(flattest).max(LEAST_NOISE * spacing);
+        let noise = noise_of_planes(fitted.plan, around);
         let grain = grain(spacing, fitted.plan.noise);
         Self {
             spacing,

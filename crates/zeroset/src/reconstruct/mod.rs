@@ -27,8 +27,8 @@ pub use crate::model::AttributeChoice;
 pub(crate) use plan::{LEAST_POINTS, Measured};
 pub use plan::{MinComponent, Plan, PlanReport, ReconstructParams, Resolution, Trim, plan};
 pub use quality::Quality;
+pub(crate) use run::{Beyond, Shaped, shape};
 pub use run::{FittedReport, ReconstructReport, StageSeconds};
-pub(crate) use run::{Shaped, shape};
 pub use scene::SceneEvidence;
 pub use structure::StructureReport;
 

@@ -132,7 +132,8 @@ impl Plan<'_> {
         let (field, fit) = prepared.fit(&Part::new(monitor, 0.0..after_fit / cascade::SHARE))?;
         seconds.fit = start.elapsed().as_secs_f64();
         let bounds = crate::domain::bounds(cloud.points.iter().copied());
-        let shaped = shape(field, cloud, &plan, &known, (bounds.into(), None), &Part::new(monitor, after_fit..1.0))?;
+        let beyond = Beyond { bounds: bounds.into(), reach: None, max_distance: None };
+        let shaped = shape(field, cloud, &plan, &known, beyond, &Part::new(monitor, after_fit..1.0))?;
         let Shaped { fitted, structure, polish, seconds: own } = shaped;
         (seconds.structure, seconds.polish) = own;
         monitor.share(1.0);
@@ -149,21 +150,38 @@ pub(crate) struct Shaped {
     pub(crate) seconds: (f64, f64),
 }
 
-/// Finds planes in the points and polishes F, or only makes it a length. `known` is in the frame of the fit. `bounds` is the box in which the
-/// surface ends; F is polished in the box of the points, and in `reach`, in the frame of the fit.
+/// What is known of a surface beyond the points at hand.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Beyond {
+    /// The box in which it ends.
+    pub(crate) bounds: [[f64; 3]; 2],
+    /// A box in the frame of the fit in which F is polished even where there are no points.
+    pub(crate) reach: Option<[[f64; 3]; 2]>,
+    /// How far a point lies from its plane at most, where that was measured elsewhere.
+    pub(crate) max_distance: Option<f64>,
+}
+
+/// Finds planes in the points and polishes F, or only makes it a length. `known` is in the frame of the fit.
 pub(crate) fn shape(
     field: LatticeField,
     cloud: &Cloud,
     plan: &PlanReport,
     known: &Local,
-    (bounds, reach): ([[f64; 3]; 2], Option<[[f64; 3]; 2]>),
+    beyond: Beyond,
     monitor: &dyn Monitor,
 ) -> Result<Shaped, ReconstructError> {
     let frame = Frame::new(plan.up, plan.scene);
     let left = known.moved(|p| frame.leave(p));
     let start = Instant::now();
     let structure = match plan.polish {
-        Some(_) => Some(Found::find(cloud, plan, &field, &left, &Part::new(monitor, 0.0..STRUCTURE_SHARE))?),
+        Some(_) => Some(Found::find(
+            cloud,
+            plan,
+            &field,
+            &left,
+            beyond.max_distance,
+            &Part::new(monitor, 0.0..STRUCTURE_SHARE),
+        )?),
         None => None,
     };
     let of_structure = start.elapsed().as_secs_f64();
@@ -171,7 +189,7 @@ pub(crate) fn shape(
     let (field, polish) = match (&structure, plan.polish) {
         (Some(structure), Some(params)) => {
             monitor.stage("polishing");
-            let (field, report) = structure.polish(&field, cloud, known, reach, (frame, params), monitor)?;
+            let (field, report) = structure.polish(&field, cloud, known, beyond.reach, (frame, params), monitor)?;
             (field, Some(report))
         }
         _ => (as_length(field, cloud, frame), None),
@@ -183,7 +201,7 @@ pub(crate) fn shape(
         scene: plan.scene,
         frame: frame.rows(),
         metric: Metric::Near,
-        bounds,
+        bounds: beyond.bounds,
         noise: plan.noise,
         trim: plan.trim,
         min_component: plan.min_component,

@@ -41,15 +41,17 @@ pub struct StructureReport {
 }
 
 impl Found {
-    /// Finds planes with the fit that is there. `known`, in the coordinates of the cloud, adds planes of the user.
+    /// Finds planes with the fit that is there. `known`, in the coordinates of the cloud, adds planes of the user; `max_distance` is that of a point from its
+    /// plane, where it is not to be measured here.
     pub(super) fn find(
         cloud: &Cloud,
         plan: &PlanReport,
         field: &LatticeField,
         known: &Local,
+        max_distance: Option<f64>,
         monitor: &dyn Monitor,
     ) -> Result<Self, ReconstructError> {
-        let params = FeatureParams { scene: Some(plan.scene), up: plan.up, ..FeatureParams::default() };
+        let params = FeatureParams { scene: Some(plan.scene), up: plan.up, max_distance, ..FeatureParams::default() };
         let (features, found) = match detect_with(cloud, (plan, field), &params, monitor) {
             Ok(found) => found,
             Err(FeatureError::Cancelled(cancelled)) => return Err(cancelled.into()),

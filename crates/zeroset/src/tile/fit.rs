@@ -10,7 +10,7 @@ use crate::field::LatticeField;
 use crate::fit::cascade::{self, FitParams, FitReport, PolishReport, Prepared};
 use crate::model::{Fitted, SAMPLES_REL};
 use crate::monitor::{Monitor, Part};
-use crate::reconstruct::{LEAST_POINTS, ReconstructError, Shaped, StructureReport, shape};
+use crate::reconstruct::{Beyond, LEAST_POINTS, ReconstructError, Shaped, StructureReport, shape};
 use crate::vec3::Vec3;
 
 /// What was fitted to the points of a tile and its halo.
@@ -102,9 +102,10 @@ impl TilePlan {
         drop(entered);
         let refined = prepared.refine(coarse, &region, &Part::new(monitor, 0.0..CASCADE / cascade::SHARE));
         let (field, fit) = refined.map_err(ReconstructError::from)?;
-        let ends = (self.bounds, Some(halo));
+        let beyond = Beyond { bounds: self.bounds, reach: Some(halo), max_distance: self.plane_distance };
         let rest = &Part::new(monitor, CASCADE..1.0);
-        let Shaped { fitted, structure, polish, .. } = shape(field, &gathered.near, &self.report, &known, ends, rest)?;
+        let Shaped { fitted, structure, polish, .. } =
+            shape(field, &gathered.near, &self.report, &known, beyond, rest)?;
         let (points, far_points) = (gathered.near.len(), gathered.far.len());
         Ok(Some((TileFit(fitted), TileFitReport { points, far_points, fit, structure, polish })))
     }

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::layout::Layout;
 use crate::cloud::Cloud;
 use crate::constraint::Local;
+use crate::feature::farthest_from_planes;
 use crate::fit::Frame;
 use crate::fit::cascade::Scene;
 use crate::reconstruct::{Measured, PlanReport, ReconstructError, ReconstructParams, Trim};
@@ -66,6 +67,8 @@ pub struct TilePlan {
     pub side: f64,
     /// The tiles, in order: those that hold points.
     pub tiles: Vec<TileId>,
+    /// How far a point lies from its plane at most; `None` in a draft.
+    pub plane_distance: Option<f64>,
 }
 
 /// What is known of the points of a whole, measured wherever they are.
@@ -117,7 +120,12 @@ impl TilePlan {
         let mut report = whole.report(params, (resolution, resolution), 0, whole.surface_cells(resolution), &known);
         tiles.sort_unstable();
         tiles.dedup();
-        let mut plan = Self { report: report.clone(), world_from_local: sample.world_from_local, bounds, side, tiles };
+        let plane_distance = match report.polish {
+            Some(_) => Some(farthest_from_planes(sample, &report, &())?),
+            None => None,
+        };
+        let world_from_local = sample.world_from_local;
+        let mut plan = Self { report: report.clone(), world_from_local, bounds, side, tiles, plane_distance };
         report.levels = Layout::new(&plan)?.lattice.finest + 1;
         plan.report = report;
         Ok(plan)
