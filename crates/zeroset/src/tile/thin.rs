@@ -9,7 +9,7 @@ use crate::reconstruct::ReconstructError;
 
 /// Points kept for each cell.
 ///
-/// Delft in nine tiles lies .037, .021 and .012 cells in the mean from the same without tiles, in a draft, with 4, 16 and 64.
+/// Delft in nine tiles lies .037 and .012 cells in the mean from the same without tiles, in a draft, with 4 and with 64.
 const KEPT: usize = 32;
 
 impl TilePlan {
