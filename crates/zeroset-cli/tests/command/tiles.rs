@@ -142,7 +142,7 @@ fn a_run_that_is_killed_goes_on_and_ends_with_the_same_bits() {
             .spawn()
             .unwrap();
         // Later each time, so that every step is hit sooner or later, and the last run ends.
-        std::thread::sleep(Duration::from_millis(40 + 130 * attempt));
+        std::thread::sleep(Duration::from_millis(40 + 350 * attempt));
         if let Some(status) = child.try_wait().unwrap() {
             assert!(status.success());
             break;
