@@ -6,7 +6,7 @@ from _typeshed import SupportsLenAndGetItem
 from os import PathLike
 from typing import Any, SupportsFloat, SupportsIndex, final
 
-__all__ = ["Features", "NormalizedFit", "Solid", "address", "command", "features", "fit", "load_mesh", "mesh_self_intersections", "mesh_topology", "newe", "normalized_fit", "read_points", "reconstruct", "sample", "sample_kinds", "save_mesh", "simplify_mesh", "version"]
+__all__ = ["Features", "NormalizedFit", "Solid", "TileFolder", "address", "command", "features", "fit", "load_mesh", "mesh_self_intersections", "mesh_topology", "newe", "normalized_fit", "read_points", "reconstruct", "sample", "sample_kinds", "save_mesh", "simplify_mesh", "version"]
 
 @final
 class Features:
@@ -140,6 +140,61 @@ class Solid:
     def volume(self, /, options: "dict[str, Any]") -> "tuple[float, float]":
         """
         The volume and its error.
+        """
+
+@final
+class TileFolder:
+    """
+    A folder in which tiles are made. Steps run on so many threads.
+    """
+    def __new__(cls, /, path: "Any", threads: "int | None") -> TileFolder: ...
+    def coarse(self, /, options: "dict[str, Any]") -> "None":
+        """
+        Fits the coarse levels of the whole. All tiles must be thinned.
+        """
+    def finish(self, /, entries: "str", options: "dict[str, Any]") -> "None":
+        """
+        Writes the lists of the tiles that `write` wrote, which are given as JSON.
+        """
+    def fit(self, /, tile: "tuple[int, int]", options: "dict[str, Any]") -> "None":
+        """
+        Fits a tile. The coarse levels must be there.
+        """
+    def is_sorted(self, /, input: "int") -> "bool":
+        """
+        Whether an input is sorted.
+        """
+    def mesh(self, /, tile: "tuple[int, int]") -> "None":
+        """
+        Extracts the surface of a tile. It and those around it must be fitted.
+        """
+    def open(self, /, run: "str") -> "None":
+        """
+        Makes the folder, or opens one that was begun with the same `run`, which is JSON.
+        """
+    def plan(self, /, inputs: "int", side: "float", options: "dict[str, Any]") -> "list[tuple[tuple[int, int], list[tuple[int, int]]]]":
+        """
+        Puts together what was sorted of so many inputs, and resolves every default. Returns the tiles, each with those around it.
+        """
+    def remove(self, /) -> "None":
+        """
+        Removes the folder.
+        """
+    def remove_work(self, /) -> "None":
+        """
+        Removes what steps handed on.
+        """
+    def sort(self, /, input: "int", path: "Any", side: "float", options: "dict[str, Any]") -> "None":
+        """
+        Sorts the points of a file into tiles.
+        """
+    def thin(self, /, tile: "tuple[int, int]") -> "None":
+        """
+        Thins the points of a tile for coarser levels.
+        """
+    def write(self, /, tile: "tuple[int, int]", options: "dict[str, Any]") -> "dict[str, Any] | None":
+        """
+        Writes the surface of a tile, if it has one. It and those around it must be extracted.
         """
 
 def address(points: Any) -> "int":

@@ -11,7 +11,7 @@ use std::process::Command;
 use crate::{Step, root, run};
 
 /// What the tests need, by the names of the package index.
-const PACKAGES: [&str; 4] = ["numpy", "pytest", "mypy", "numpydoc"];
+const PACKAGES: [&str; 6] = ["numpy", "distributed", "fsspec", "pytest", "mypy", "numpydoc"];
 
 /// Whether the file of types is compared or written.
 #[derive(Clone, Copy, PartialEq, Eq)]

@@ -11,6 +11,7 @@ use zeroset::model::ModelError;
 use zeroset::monitor::Cancelled;
 use zeroset::reconstruct::ReconstructError;
 use zeroset_io::{IoError, SolidError};
+use zeroset_tiles::TilesError;
 
 /// What went wrong, before it is an exception.
 #[derive(Debug)]
@@ -208,6 +209,21 @@ impl From<IoError> for Failure {
             | IoError::DiskFull { .. }
             | IoError::System { .. } => "FileError",
             _ => "FormatError",
+        };
+        Self::new(class, error.to_string())
+    }
+}
+
+impl From<TilesError> for Failure {
+    fn from(error: TilesError) -> Self {
+        let class = match error {
+            TilesError::Io(error) => return error.into(),
+            TilesError::Reconstruct(error) => return error.into(),
+            TilesError::Cancelled(cancelled) => return cancelled.into(),
+            TilesError::OtherRun { .. } | TilesError::NotEmpty { .. } => "FileError",
+            TilesError::Damaged { .. } => "FormatError",
+            TilesError::Missing { .. } => "FileMissingError",
+            TilesError::NoPoints => "InputError",
         };
         Self::new(class, error.to_string())
     }

@@ -23,6 +23,7 @@ mod options;
 mod reconstruct;
 mod sample;
 mod solid;
+mod tiles;
 mod watch;
 
 /// The module.
@@ -48,4 +49,6 @@ mod _core {
     use crate::sample::{sample, sample_kinds};
     #[pymodule_export]
     use crate::solid::Solid;
+    #[pymodule_export]
+    use crate::tiles::TileFolder;
 }

@@ -10,9 +10,7 @@ use zeroset::monitor::{Monitor, check};
 use zeroset::reconstruct::ReconstructParams;
 use zeroset::tile::{TileId, TilePlan};
 
-use crate::folder::create;
-use crate::tileset::{TileEntry, write_tileset};
-use crate::{Folder, Sorted, TileFormat, TilesError};
+use crate::{Folder, Sorted, TileEntry, TileFormat, TilesError};
 
 /// How tiles are made.
 #[derive(Debug, Clone)]
@@ -106,7 +104,6 @@ pub fn write_tiles(
     format: TileFormat,
     crew: &Crew<'_>,
 ) -> Result<Vec<TileEntry>, TilesError> {
-    create(&folder.path().join("tiles"))?;
     let entries: Mutex<Vec<TileEntry>> = Mutex::default();
     crew.each(&plan.tiles, "writing", SHARES[3]..SHARES[4], |tile, _| {
         if let Some(entry) = folder.write_tile(sorted, plan, tile, format)? {
@@ -114,10 +111,7 @@ pub fn write_tiles(
         }
         Ok(())
     })?;
-    let mut entries = entries.into_inner().unwrap_or_else(PoisonError::into_inner);
-    entries.sort_by_key(|entry| entry.id);
-    write_tileset(folder, sorted, plan, &entries, format)?;
-    Ok(entries)
+    folder.write_lists(sorted, plan, entries.into_inner().unwrap_or_else(PoisonError::into_inner), format)
 }
 
 /// Those who work on tiles.

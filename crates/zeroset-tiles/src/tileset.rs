@@ -13,7 +13,7 @@ use zeroset::mesh::Mesh;
 use zeroset::tile::{TileId, TilePlan};
 use zeroset_io::{WriteOptions, write_mesh};
 
-use crate::folder::write_json;
+use crate::folder::{create, write_json};
 use crate::{Folder, Sorted, TileFormat, TilesError};
 
 /// A tile that was written.
@@ -53,8 +53,28 @@ impl Folder {
             TileFormat::Ply => Mesh { world_from_local: plan.world_from_local, ..mesh },
         };
         let options = WriteOptions { resolution: Some(plan.report.resolution), ..WriteOptions::default() };
+        create(&self.path().join("tiles"))?;
         write_mesh(&self.path().join(&file), &placed, &options)?;
         Ok(Some(TileEntry { id: tile, file, triangles, bounds }))
+    }
+
+    /// Writes what lists the tiles that were written, last of all.
+    ///
+    /// # Errors
+    /// If a file cannot be written.
+    pub fn write_lists(
+        &self,
+        sorted: &Sorted,
+        plan: &TilePlan,
+        mut entries: Vec<TileEntry>,
+        format: TileFormat,
+    ) -> Result<Vec<TileEntry>, TilesError> {
+        entries.sort_by_key(|entry| entry.id);
+        write_json(&self.path().join("tiles.json"), &outlines(sorted, plan, &entries))?;
+        if format == TileFormat::Glb {
+            write_json(&self.path().join("tileset.json"), &tileset(plan, &entries))?;
+        }
+        Ok(entries)
     }
 }
 
@@ -73,21 +93,6 @@ fn box_of(mesh: &Mesh) -> [[f64; 3]; 2] {
         }
     }
     bounds
-}
-
-/// Writes what lists the tiles.
-pub(crate) fn write_tileset(
-    folder: &Folder,
-    sorted: &Sorted,
-    plan: &TilePlan,
-    entries: &[TileEntry],
-    format: TileFormat,
-) -> Result<(), TilesError> {
-    write_json(&folder.path().join("tiles.json"), &outlines(sorted, plan, entries))?;
-    if format == TileFormat::Glb {
-        write_json(&folder.path().join("tileset.json"), &tileset(plan, entries))?;
-    }
-    Ok(())
 }
 
 /// The outlines of the tiles as GeoJSON, in world coordinates.
