@@ -31,9 +31,10 @@ pub(super) fn are_asked_for(args: &ReconstructArgs) -> bool {
     args.tiles.tile.is_some() || args.output.as_deref().is_some_and(is_folder)
 }
 
-/// Whether an output is a folder: it ends like one, or is one.
+/// Whether an output is a folder: it ends like one, or is one and does not have the name of a mesh.
 pub(super) fn is_folder(output: &Path) -> bool {
-    output.as_os_str().as_encoded_bytes().last().is_some_and(|c| matches!(c, b'/' | b'\\')) || output.is_dir()
+    let ends_like_one = output.as_os_str().as_encoded_bytes().last().is_some_and(|c| matches!(c, b'/' | b'\\'));
+    ends_like_one || output.is_dir() && MeshFormat::from_path(output).is_err()
 }
 
 /// What a folder is of: another run into it must say the same.
