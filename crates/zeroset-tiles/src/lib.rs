@@ -31,7 +31,7 @@ mod tileset;
 pub use error::TilesError;
 pub use folder::Folder;
 pub use points::Values;
-pub use run::{Crew, RunParams, RunReport, TileSeconds, run, write_tiles};
+pub use run::{Crew, RunParams, TileSeconds, run, write_tiles};
 pub use sort::{Sorted, SortedTile};
 pub use steps::TileFormat;
 pub use tileset::TileEntry;

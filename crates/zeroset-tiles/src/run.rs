@@ -21,8 +21,6 @@ pub struct RunParams {
     pub jobs: usize,
     /// Threads in all.
     pub threads: usize,
-    /// How tiles are written.
-    pub format: TileFormat,
 }
 
 /// Wall seconds of each kind of step, this time.
@@ -38,19 +36,6 @@ pub struct TileSeconds {
     pub mesh: f64,
     /// Writing of what was asked for.
     pub write: f64,
-}
-
-/// What was made.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct RunReport {
-    /// The plan.
-    pub plan: TilePlan,
-    /// Tiles with a surface.
-    pub tiles: Vec<TileEntry>,
-    /// Triangles of all.
-    pub triangles: u64,
-    /// Wall seconds, this time.
-    pub seconds: TileSeconds,
 }
 
 /// The share of the whole that is done after each kind of step.

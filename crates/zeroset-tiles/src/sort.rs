@@ -89,13 +89,12 @@ impl Folder {
         remove(&place)?;
         create(&place)?;
         let offset = up.upright(cloud.world_from_local);
-        let tile_of = |p: [f64; 3]| {
-            let p = up.upright(p);
-            let at = |a: usize| ((p[a] + offset[a]) / side).floor() as i32;
-            TileId { x: at(0), y: at(1) }
-        };
-        let mut order: Vec<(TileId, u32)> =
-            cloud.points.par_iter().enumerate().map(|(i, &p)| (tile_of(p), i as u32)).collect();
+        let mut order: Vec<(TileId, u32)> = cloud
+            .points
+            .par_iter()
+            .enumerate()
+            .map(|(i, &p)| (TileId::of(up.upright(p), offset, side), i as u32))
+            .collect();
         order.par_sort_unstable();
         let mut done = OfInput {
             bounds: (0..cloud.len()).map(|i| cloud.world(i)).fold(None, |bounds, p| Some(with(bounds, [p; 2]))),

@@ -129,7 +129,7 @@ fn make(
     };
     let memory_limit_bytes = params.memory;
     let params = ReconstructParams { constraints, ..params };
-    let run_params = RunParams { reconstruct: params, jobs, threads, format };
+    let run_params = RunParams { reconstruct: params, jobs, threads };
     let (plan, seconds, entries) = with_progress(console, |progress| -> Result<_, CliError> {
         let (plan, mut seconds) = run(folder, &sorted, &run_params, progress)?;
         let begun = Instant::now();

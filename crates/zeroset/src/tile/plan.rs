@@ -23,6 +23,13 @@ pub struct TileId {
 }
 
 impl TileId {
+    /// The tile of a local position, z up, given the offset to world coordinates, z up, and the side of tiles.
+    #[must_use]
+    pub fn of(p: [f64; 3], offset: [f64; 3], side: f64) -> Self {
+        let at = |a: usize| ((p[a] + offset[a]) / side).floor() as i32;
+        Self { x: at(0), y: at(1) }
+    }
+
     /// The tile so many columns and rows on.
     #[must_use]
     pub fn offset(self, columns: i32, rows: i32) -> Self {
@@ -131,12 +138,6 @@ impl TilePlan {
         Ok(plan)
     }
 
-    /// The tile of a local position.
-    #[must_use]
-    pub fn tile_of(&self, p: [f64; 3]) -> TileId {
-        tile_of(self.report.up.upright(p), self.report.up.upright(self.world_from_local), self.side)
-    }
-
     /// Lower left and upper right corner of a tile in world coordinates, z up.
     #[must_use]
     pub fn outline(&self, tile: TileId) -> [[f64; 2]; 2] {
@@ -179,10 +180,4 @@ impl TilePlan {
         Layout::new(self)
             .map_or(0, |layout| layout.lattice.nodes_at(layout.lattice.finest).into_iter().max().unwrap_or(0))
     }
-}
-
-/// The tile of an upright local position.
-pub(super) fn tile_of(p: [f64; 3], offset: [f64; 3], side: f64) -> TileId {
-    let at = |a: usize| ((p[a] + offset[a]) / side).floor() as i32;
-    TileId { x: at(0), y: at(1) }
 }

@@ -22,7 +22,7 @@ pub fn reconstruct(
     let offset = up.upright(cloud.world_from_local);
     let mut places: BTreeMap<TileId, Vec<bool>> = BTreeMap::new();
     for (i, &p) in cloud.points.iter().enumerate() {
-        let tile = super::plan::tile_of(up.upright(p), offset, side);
+        let tile = TileId::of(up.upright(p), offset, side);
         places.entry(tile).or_insert_with(|| vec![false; cloud.len()])[i] = true;
     }
     let bounds = crate::domain::bounds(cloud.points.iter().copied()).into();

@@ -79,7 +79,7 @@ fn what_cannot_be_cut_into_tiles_is_refused() {
 
 #[test]
 fn tiles_lie_on_whole_multiples_of_their_side() {
-    let sorted = |p: [f64; 3]| plan::tile_of(p, [100.0, 200.0, 0.0], 50.0);
+    let sorted = |p: [f64; 3]| TileId::of(p, [100.0, 200.0, 0.0], 50.0);
     assert_eq!(sorted([0.0, 0.0, 0.0]), TileId { x: 2, y: 4 });
     assert_eq!(sorted([-0.1, 49.9, 7.0]), TileId { x: 1, y: 4 });
     assert_eq!(sorted([-101.0, -201.0, 7.0]), TileId { x: -1, y: -1 });
