@@ -4,7 +4,7 @@
 
 Prints, for Delft in four tiles and for a simulated city in nine: components, open edges, vertices shared bit for bit, and the distance of either
 surface from the other, in cells; then whether a run that was killed ten times ends with the same bits; then seconds and memory for
-each million points.
+each million points, with tiles as wide as 4 GB allow for.
 """
 
 import argparse
@@ -130,19 +130,21 @@ def kills(binary, work, cloud, cell, side, quality, options=()):
     print(f"  killed {done} times; same bits: {same}")
 
 
-def cost(binary, work, points, quality, tiles):
-    cloud = work / f"city-{points}.las"
+def cost(binary, work, points, quality):
+    """Tiles as wide as 4 GB allow for. Noise is a third of the spacing, so that cells are as rough in a large cloud as in a small one."""
+    cloud = work / f"cost-{points}.las"
     if not cloud.exists():
-        run_sample = [binary, "sample", "airborne-city", "--points", points, "--noise", 0.0003, "-o", cloud]
-        subprocess.run(list(map(str, run_sample)), check=True)
+        words = ["sample", "airborne-city", "--points", points, "--noise", round(0.33 / points**0.5, 7), "-o", cloud]
+        subprocess.run([binary, *map(str, words)], check=True)
     shutil.rmtree(work / "cost", ignore_errors=True)
     report = work / "cost.json"
-    run(binary, "reconstruct", cloud, "-o", f"{work / 'cost'}/", "--tile", 1 / tiles, "--memory", "4GB", "--jobs", 2,
-        "--quality", quality, "--scene", "airborne", "--report", report)
+    run(binary, "reconstruct", cloud, "-o", f"{work / 'cost'}/", "--memory", "4GB", "--jobs", 2, "--quality", quality, "--report", report)
     found = json.loads(report.read_text())
-    seconds, peak = found["total_seconds"], found["memory_peak_bytes"] / 1e9
-    print(f"  {points / 1e6:g} M points, {len(found['plan']['tiles'])} tiles: {seconds:.1f} s, {seconds / points * 1e6:.1f} s a million, "
-          f"{peak:.2f} GB at most;", {k: round(v, 1) for k, v in found["seconds"].items()})
+    seconds, peak, tiles = found["total_seconds"], found["memory_peak_bytes"] / 1e9, found["plan"]["tiles"]
+    stages = {"sort": found["sort_seconds"], **found["seconds"]}
+    print(f"  {points / 1e6:g} M points, {len(tiles)} tiles of {found['plan']['side'] / found['plan']['report']['resolution']:.0f} cells: "
+          f"{seconds:.1f} s, {seconds / points * 1e6:.1f} s a million, {peak:.2f} GB at most, {found['triangles'] / 1e6:.1f} M triangles;")
+    print("    s a million:", {stage: round(value / points * 1e6, 2) for stage, value in stages.items()})
 
 
 def main():
@@ -151,6 +153,7 @@ def main():
     parser.add_argument("--work", type=Path, required=True)
     parser.add_argument("--delft", type=Path)
     parser.add_argument("--points", type=int, default=2_000_000)
+    parser.add_argument("--costs", type=int, nargs="*", default=[1_000_000, 5_000_000, 50_000_000])
     parser.add_argument("--quality", default="normal")
     parser.add_argument("--only", nargs="*", default=["delft", "city", "kills", "cost"])
     args = parser.parse_args()
@@ -170,8 +173,8 @@ def main():
         compare(args.zeroset, args.work, cloud, cell, 1 / 3, args.quality, ["--scene", "airborne"])
     if "cost" in args.only:
         print("cost")
-        for points, tiles in ((args.points // 4, 2), (args.points, 4)):
-            cost(args.zeroset, args.work, points, args.quality, tiles)
+        for points in args.costs:
+            cost(args.zeroset, args.work, points, args.quality)
 
 
 main()

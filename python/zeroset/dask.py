@@ -144,9 +144,7 @@ def _open(job: _Job) -> dict[str, Any] | None:
         "options": repr((job.side, sorted((name, value) for name, value in job.options.items() if name != "memory"))),
     }
     job.steps().open(json.dumps(run))
-    # What is written last.
-    last = "tileset.json" if job.options["tile_format"] == "glb" else "tiles.json"
-    is_done = job.output == job.folder and os.path.exists(os.path.join(job.folder, last))
+    is_done = job.output == job.folder and os.path.exists(os.path.join(job.folder, "done.json"))
     return _listed(job) if is_done else None
 
 
@@ -160,7 +158,7 @@ def _sort(job: _Job, number: int) -> None:
     steps, path = job.steps(), job.paths[number]
     if _is_local(path):
         steps.sort(number, path, job.side, job.options)
-    elif not steps.is_sorted(number):
+    elif not steps.is_sorted(number, job.side):
         files, root = fsspec.core.url_to_fs(path, **job.storage)
         with tempfile.TemporaryDirectory(prefix="zeroset-") as folder:
             # The suffix tells the format.

@@ -13,7 +13,6 @@
 pub mod args;
 
 mod asprs;
-mod cloud_box;
 mod compare;
 mod completions;
 mod console;

@@ -3,8 +3,10 @@
 //! Files are read, not mapped: a map turns a file that somebody shortens meanwhile into a fault of the process, and
 //! reading costs less than a tenth of the decoding of any format here.
 
+use std::borrow::Cow;
 use std::fs::File;
-use std::io::Read;
+use std::io::{Read, Seek, SeekFrom};
+use std::ops::Range;
 use std::path::Path;
 
 use crate::IoError;
@@ -34,6 +36,63 @@ pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>, IoError> {
         return Err(IoError::Empty { path: path.to_path_buf() });
     }
     Ok(bytes)
+}
+
+/// Where bytes are taken from: all of a file in memory, or a file that is read as far as it is needed.
+pub(crate) trait Source {
+    /// Bytes in all.
+    fn length(&self) -> u64;
+
+    /// Some of the bytes. The range must lie within the length; what is not there after all is an error.
+    fn get(&mut self, range: Range<u64>) -> std::io::Result<Cow<'_, [u8]>>;
+}
+
+impl Source for &[u8] {
+    fn length(&self) -> u64 {
+        self.len() as u64
+    }
+
+    fn get(&mut self, range: Range<u64>) -> std::io::Result<Cow<'_, [u8]>> {
+        let place = usize::try_from(range.start).ok().zip(usize::try_from(range.end).ok());
+        let bytes = place.and_then(|(start, end)| <[u8]>::get(self, start..end));
+        bytes.map(Cow::Borrowed).ok_or_else(|| std::io::ErrorKind::UnexpectedEof.into())
+    }
+}
+
+/// A regular file, and its length when it was opened.
+#[derive(Debug)]
+pub(crate) struct OpenFile {
+    file: File,
+    length: u64,
+}
+
+impl OpenFile {
+    /// Opens a file; `None` if it is none that can be read in any order.
+    pub(crate) fn open(path: &Path) -> Result<Option<Self>, IoError> {
+        if path == Path::new("-") {
+            return Ok(None);
+        }
+        let failed = |source| IoError::from_system(path, source);
+        let file = File::open(path).map_err(failed)?;
+        let facts = file.metadata().map_err(failed)?;
+        Ok(facts.is_file().then_some(Self { file, length: facts.len() }))
+    }
+}
+
+impl Source for OpenFile {
+    fn length(&self) -> u64 {
+        self.length
+    }
+
+    fn get(&mut self, range: Range<u64>) -> std::io::Result<Cow<'_, [u8]>> {
+        let length = usize::try_from(range.end - range.start).map_err(|_| std::io::ErrorKind::OutOfMemory)?;
+        let mut bytes = Vec::new();
+        bytes.try_reserve_exact(length).map_err(|_| std::io::ErrorKind::OutOfMemory)?;
+        bytes.resize(length, 0);
+        self.file.seek(SeekFrom::Start(range.start))?;
+        self.file.read_exact(&mut bytes)?;
+        Ok(Cow::Owned(bytes))
+    }
 }
 
 /// Reads little-endian fields one after another out of a slice.

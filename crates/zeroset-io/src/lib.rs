@@ -55,8 +55,8 @@ pub mod solid;
 pub mod table;
 
 pub use cloud::{
-    CloudFile, LinearUnit, NO_CLASS, NO_COLOR, NO_INTENSITY, ReadReport, Source, read_cloud, read_cloud_bytes,
-    read_clouds, write_cloud,
+    CloudFile, CloudPart, CloudSize, LinearUnit, NO_CLASS, NO_COLOR, NO_INTENSITY, ReadReport, Source, cloud_size,
+    read_cloud, read_cloud_bytes, read_cloud_parts, read_clouds, write_cloud,
 };
 pub use constraints::{
     ConstraintFile, ConstraintFormat, Footprint, read_constraints, read_constraints_bytes, read_footprints,

@@ -8,8 +8,8 @@ use std::sync::{Mutex, PoisonError};
 use crate::IoError;
 
 /// What writers of formats need: some go back to fill in a header.
-pub(crate) trait Sink: Write + Seek {}
-impl<T: Write + Seek> Sink for T {}
+pub(crate) trait Sink: Write + Seek + Send + Sync {}
+impl<T: Write + Seek + Send + Sync> Sink for T {}
 
 /// Size of the buffer before a file.
 const BUFFER: usize = 1 << 18;

@@ -10,7 +10,6 @@ use zeroset::cloud::{Filter, NOISE_CLASSES};
 use zeroset::monitor::Monitor;
 use zeroset::reconstruct::ReconstructParams;
 use zeroset::tile::{TileId, TilePlan};
-use zeroset_io::read_cloud;
 use zeroset_tiles::{Folder, Sorted, TileEntry, TileFormat, TilesError};
 
 use crate::arrays::dictionary;
@@ -66,10 +65,10 @@ impl TileFolder {
         Ok(())
     }
 
-    /// Whether an input is sorted.
-    #[pyo3(signature = (input: "int") -> "bool")]
-    fn is_sorted(&self, input: usize) -> bool {
-        self.folder.is_sorted(input)
+    /// Whether an input is sorted into tiles of a side.
+    #[pyo3(signature = (input: "int", side: "float") -> "bool")]
+    fn is_sorted(&self, input: usize, side: f64) -> PyResult<bool> {
+        Ok(self.folder.is_sorted(input, side).map_err(Failure::from)?)
     }
 
     /// Sorts the points of a file into tiles.
@@ -96,14 +95,7 @@ impl TileFolder {
         if !(side.is_finite() && side > 0.0) {
             return Err(Failure::parameter(format!("a tile of {side} is not possible; give a positive length")).into());
         }
-        self.run(py, |folder, _| {
-            if folder.is_sorted(input) {
-                return Ok(());
-            }
-            let mut cloud = read_cloud(&path)?.cloud;
-            let _ = filter.apply(&mut cloud);
-            folder.sort(input, &cloud, side, up)
-        })
+        self.run(py, |folder, monitor| folder.sort_file(input, &path, &filter, (side, up), monitor))
     }
 
     /// Puts together what was sorted of so many inputs, and resolves every default. Returns the tiles, each with those around it.

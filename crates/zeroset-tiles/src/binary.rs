@@ -1,5 +1,6 @@
 //! Files between steps: numbers one after another, little-endian.
 
+use std::fs::OpenOptions;
 use std::io::Write;
 use std::path::Path;
 
@@ -63,6 +64,12 @@ impl Out {
         if let Some(values) = values {
             self.list(values);
         }
+    }
+
+    /// Adds it to a file that counts for nothing until all is written.
+    pub(crate) fn append(&self, path: &Path) -> Result<(), TilesError> {
+        let file = OpenOptions::new().append(true).create(true).open(path);
+        file.and_then(|mut file| file.write_all(&self.0)).map_err(|source| TilesError::system(path, source))
     }
 
     pub(crate) fn write(&self, path: &Path) -> Result<(), TilesError> {

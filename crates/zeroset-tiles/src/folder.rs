@@ -8,7 +8,7 @@ use zeroset::tile::{TileId, TilePlan};
 use zeroset_io::{IoError, write_atomically};
 
 use crate::binary::read;
-use crate::{Sorted, TilesError};
+use crate::{Sorted, TileEntry, TilesError};
 
 /// A folder with what was made so far.
 #[derive(Debug, Clone)]
@@ -76,6 +76,25 @@ impl Folder {
         let _ = std::fs::remove_dir(&self.path);
     }
 
+    /// The tiles that were written, once all is done.
+    ///
+    /// # Errors
+    /// If the file cannot be read.
+    pub fn finished(&self) -> Result<Option<Vec<TileEntry>>, TilesError> {
+        let path = self.done_at();
+        if path.exists() { read_json(&path).map(Some) } else { Ok(None) }
+    }
+
+    /// Forgets what was sorted and planned, so that it can be sorted anew.
+    ///
+    /// # Errors
+    /// If it cannot be removed.
+    pub fn forget_points(&self) -> Result<(), TilesError> {
+        remove_file(&self.plan_at())?;
+        remove_file(&self.sorted_at())?;
+        self.remove_work()
+    }
+
     /// Removes the folder with all that is in it.
     ///
     /// # Errors
@@ -119,6 +138,11 @@ impl Folder {
         self.work().join("coarse")
     }
 
+    /// Written last of all.
+    pub(crate) fn done_at(&self) -> PathBuf {
+        self.path.join("done.json")
+    }
+
     pub(crate) fn sorted_at(&self) -> PathBuf {
         self.path.join("sorted.json")
     }
@@ -149,6 +173,14 @@ impl Folder {
 /// Removes a folder, if it is there.
 pub(crate) fn remove(path: &Path) -> Result<(), TilesError> {
     match std::fs::remove_dir_all(path) {
+        Err(source) if source.kind() != std::io::ErrorKind::NotFound => Err(TilesError::system(path, source)),
+        _ => Ok(()),
+    }
+}
+
+/// Removes a file, if it is there.
+pub(crate) fn remove_file(path: &Path) -> Result<(), TilesError> {
+    match std::fs::remove_file(path) {
         Err(source) if source.kind() != std::io::ErrorKind::NotFound => Err(TilesError::system(path, source)),
         _ => Ok(()),
     }

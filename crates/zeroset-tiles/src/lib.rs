@@ -10,6 +10,7 @@
 //!   tileset.json    3D Tiles 1.1, for CesiumJS and QGIS
 //!   tiles.json      outlines of the tiles, as GeoJSON
 //!   tiles/x_y.glb   the surface of each tile
+//!   done.json       what was written; there when all is done
 //!   work/           what steps hand on; gone when all is done
 //! ```
 //!
@@ -32,6 +33,6 @@ pub use error::TilesError;
 pub use folder::Folder;
 pub use points::Values;
 pub use run::{Crew, RunParams, TileSeconds, run, write_tiles};
-pub use sort::{Sorted, SortedTile};
+pub use sort::{InputSort, Sorted, SortedTile};
 pub use steps::TileFormat;
 pub use tileset::TileEntry;

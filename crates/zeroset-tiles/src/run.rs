@@ -26,8 +26,8 @@ pub struct RunParams {
 /// Wall seconds of each kind of step, this time.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct TileSeconds {
-    /// Plan and thinning.
-    pub plan: f64,
+    /// Thinning.
+    pub thin: f64,
     /// The coarse levels.
     pub coarse: f64,
     /// Fits of tiles.
@@ -41,41 +41,40 @@ pub struct TileSeconds {
 /// The share of the whole that is done after each kind of step.
 const SHARES: [f64; 5] = [0.03, 0.08, 0.6, 0.95, 1.0];
 
-/// Makes all that is missing up to the surfaces of all tiles.
+/// Makes all that is missing of the surfaces of all tiles, once the points are sorted and planned.
 ///
 /// # Errors
 /// If a step fails or the monitor asks to stop. What was made stays, and the next run goes on from there.
 pub fn run(
     folder: &Folder,
     sorted: &Sorted,
+    plan: &TilePlan,
     params: &RunParams,
     monitor: &dyn Monitor,
-) -> Result<(TilePlan, TileSeconds), TilesError> {
+) -> Result<TileSeconds, TilesError> {
     let mut seconds = TileSeconds::default();
     let start = Instant::now();
-    monitor.stage("measuring the points");
     let constraints = &params.reconstruct.constraints;
-    let plan = folder.make_plan(sorted, &params.reconstruct)?;
     let crew = Crew { jobs: params.jobs, threads: params.threads, monitor };
-    crew.each(&plan.tiles, "thinning the points of", 0.0..SHARES[0], |tile, _| folder.thin(sorted, &plan, tile))?;
-    seconds.plan = start.elapsed().as_secs_f64();
+    crew.each(&plan.tiles, "thinning the points of", 0.0..SHARES[0], |tile, _| folder.thin(sorted, plan, tile))?;
+    seconds.thin = start.elapsed().as_secs_f64();
     let start = Instant::now();
     monitor.share(SHARES[0]);
-    folder.fit_coarse(sorted, &plan, constraints, &Quiet(monitor))?;
+    folder.fit_coarse(sorted, plan, constraints, &Quiet(monitor))?;
     let coarse = folder.read_coarse()?;
     seconds.coarse = start.elapsed().as_secs_f64();
     let start = Instant::now();
     crew.each(&plan.tiles, "fitting", SHARES[1]..SHARES[2], |tile, monitor| {
-        folder.fit_tile(sorted, &plan, tile, (&coarse, constraints), monitor)
+        folder.fit_tile(sorted, plan, tile, (&coarse, constraints), monitor)
     })?;
     drop(coarse);
     seconds.fit = start.elapsed().as_secs_f64();
     let start = Instant::now();
     crew.each(&plan.tiles, "extracting", SHARES[2]..SHARES[3], |tile, monitor| {
-        folder.mesh_tile(sorted, &plan, tile, monitor)
+        folder.mesh_tile(sorted, plan, tile, monitor)
     })?;
     seconds.mesh = start.elapsed().as_secs_f64();
-    Ok((plan, seconds))
+    Ok(seconds)
 }
 
 /// Writes the tiles that are extracted, and the lists of them.

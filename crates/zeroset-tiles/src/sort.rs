@@ -1,18 +1,20 @@
 //! Points sorted into files, one for each tile that an input meets.
 //!
-//! Inputs are sorted one by one, in any order and anywhere. What is written last tells that an input is done; one that is not is begun anew.
+//! Inputs are sorted one by one, in any order and anywhere, each part by part, so that none need fit into memory. What is written last tells that an
+//! input is done; one that is not is begun anew.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use zeroset::cloud::{Cloud, choose_offset};
+use zeroset::cloud::{Cloud, Filter, choose_offset};
+use zeroset::monitor::{Monitor, check};
 use zeroset::reconstruct::Up;
 use zeroset::tile::TileId;
+use zeroset_io::{CloudPart, read_cloud_parts};
 
-use crate::binary::Out;
-use crate::folder::{create, read_json, remove, write_json};
+use crate::folder::{create, read_json, remove, remove_file, write_json};
 use crate::points::{Values, read_points, segment};
 use crate::{Folder, TilesError};
 
@@ -47,6 +49,7 @@ pub struct SortedTile {
 /// What was sorted of one input.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 struct OfInput {
+    side: f64,
     tiles: Vec<(TileId, u64)>,
     bounds: Option<[[f64; 3]; 2]>,
     values: Values,
@@ -74,40 +77,59 @@ impl Folder {
         self.input(input).with_extension("json")
     }
 
-    /// Whether an input is sorted.
-    #[must_use]
-    pub fn is_sorted(&self, input: usize) -> bool {
-        self.sorted_at().exists() || self.input_done(input).exists()
-    }
-
-    /// Sorts the points of an input into tiles of a side. `up` tells which axes these are cut along.
+    /// Whether an input is sorted into tiles of a side.
     ///
     /// # Errors
-    /// If a file cannot be written.
-    pub fn sort(&self, input: usize, cloud: &Cloud, side: f64, up: Up) -> Result<(), TilesError> {
-        let place = self.input(input);
-        remove(&place)?;
-        create(&place)?;
-        let offset = up.upright(cloud.world_from_local);
-        let mut order: Vec<(TileId, u32)> = cloud
-            .points
-            .par_iter()
-            .enumerate()
-            .map(|(i, &p)| (TileId::of(up.upright(p), offset, side), i as u32))
-            .collect();
-        order.par_sort_unstable();
-        let mut done = OfInput {
-            bounds: (0..cloud.len()).map(|i| cloud.world(i)).fold(None, |bounds, p| Some(with(bounds, [p; 2]))),
-            values: Values::of(&cloud.attributes),
-            crs: cloud.crs.clone(),
-            tiles: Vec::new(),
+    /// If a file cannot be read.
+    pub fn is_sorted(&self, input: usize, side: f64) -> Result<bool, TilesError> {
+        let path = self.input_done(input);
+        Ok(self.sorted_at().exists() || path.exists() && read_json::<OfInput>(&path)?.side == side)
+    }
+
+    /// Begins to sort an input into tiles of a side. `up` tells which axes these are cut along.
+    ///
+    /// # Errors
+    /// If the folder of the input cannot be made.
+    pub fn sort(&self, input: usize, side: f64, up: Up) -> Result<InputSort, TilesError> {
+        let sort = InputSort {
+            place: self.input(input),
+            done_at: self.input_done(input),
+            side,
+            up,
+            tiles: BTreeMap::new(),
+            done: OfInput { side, ..OfInput::default() },
         };
-        for own in order.chunk_by(|a, b| a.0 == b.0) {
-            let which: Vec<u32> = own.iter().map(|(_, i)| *i).collect();
-            segment(cloud, &which).write(&of_tile(&place, own[0].0))?;
-            done.tiles.push((own[0].0, which.len() as u64));
+        remove_file(&sort.done_at)?;
+        remove(&sort.place)?;
+        create(&sort.place)?;
+        Ok(sort)
+    }
+
+    /// Sorts those points of a file that a filter lets through, if that is not done.
+    ///
+    /// # Errors
+    /// If a file cannot be read or written, or the monitor asks to stop.
+    pub fn sort_file(
+        &self,
+        input: usize,
+        path: &Path,
+        filter: &Filter,
+        (side, up): (f64, Up),
+        monitor: &dyn Monitor,
+    ) -> Result<(), TilesError> {
+        if self.is_sorted(input, side)? {
+            return Ok(());
         }
-        write_json(&self.input_done(input), &done)
+        let mut sort = self.sort(input, side, up)?;
+        read_cloud_parts(path, PART, |CloudPart { first, mut cloud }| {
+            check(monitor)?;
+            if first == 0 {
+                sort = self.sort(input, side, up)?;
+            }
+            let _ = filter.apply(&mut cloud);
+            sort.add(&cloud)
+        })?;
+        sort.finish()
     }
 
     /// Puts together what was sorted of all inputs.
@@ -152,8 +174,59 @@ impl Folder {
     pub(crate) fn write_thinned(&self, cloud: &Cloud, tile: TileId, thinning: u32) -> Result<(), TilesError> {
         create(&self.work().join("thinned"))?;
         let all: Vec<u32> = (0..cloud.len() as u32).collect();
-        let out: Out = segment(cloud, &all);
-        out.write(&self.thinned(tile, thinning))
+        segment(cloud, &all).write(&self.thinned(tile, thinning))
+    }
+}
+
+/// An input that is being sorted. Until it is finished it counts for nothing.
+#[derive(Debug)]
+pub struct InputSort {
+    place: PathBuf,
+    done_at: PathBuf,
+    side: f64,
+    up: Up,
+    tiles: BTreeMap<TileId, u64>,
+    done: OfInput,
+}
+
+/// Points that are sorted at a time.
+const PART: usize = 1 << 21;
+
+impl InputSort {
+    /// Adds points to what was sorted before.
+    ///
+    /// # Errors
+    /// If a file cannot be written.
+    pub fn add(&mut self, cloud: &Cloud) -> Result<(), TilesError> {
+        let (side, up) = (self.side, self.up);
+        let offset = up.upright(cloud.world_from_local);
+        let mut order: Vec<(TileId, u32)> = cloud
+            .points
+            .par_iter()
+            .enumerate()
+            .map(|(i, &p)| (TileId::of(up.upright(p), offset, side), i as u32))
+            .collect();
+        order.par_sort_unstable();
+        let tiles: Vec<&[(TileId, u32)]> = order.chunk_by(|a, b| a.0 == b.0).collect();
+        tiles.par_iter().try_for_each(|own| {
+            let which: Vec<u32> = own.iter().map(|(_, i)| *i).collect();
+            segment(cloud, &which).append(&of_tile(&self.place, own[0].0))
+        })?;
+        for own in tiles {
+            *self.tiles.entry(own[0].0).or_default() += own.len() as u64;
+        }
+        self.done.bounds = cloud.bounds().map(|own| with(self.done.bounds, own)).or(self.done.bounds);
+        self.done.values = self.done.values.or(Values::of(&cloud.attributes));
+        self.done.crs = self.done.crs.take().or_else(|| cloud.crs.clone());
+        Ok(())
+    }
+
+    /// All points of the input are there.
+    ///
+    /// # Errors
+    /// If a file cannot be written.
+    pub fn finish(self) -> Result<(), TilesError> {
+        write_json(&self.done_at, &OfInput { tiles: self.tiles.into_iter().collect(), ..self.done })
     }
 }
 

@@ -74,6 +74,7 @@ impl Folder {
         if format == TileFormat::Glb {
             write_json(&self.path().join("tileset.json"), &tileset(plan, &entries))?;
         }
+        write_json(&self.done_at(), &entries)?;
         Ok(entries)
     }
 }

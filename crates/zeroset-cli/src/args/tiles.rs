@@ -9,7 +9,7 @@ use super::values::{self, Length};
 /// How ground that is larger than memory is cut up.
 #[derive(Debug, Clone, clap::Args)]
 pub struct TileArgs {
-    /// Side of the tiles that ground is fitted in one after the other, such as 250m or 800ft; without a unit it is that of the input [default: none, or what memory allows for].
+    /// Side of the tiles that ground is fitted in one after the other, such as 250m or 800ft; without a unit it is that of the input [default: none, as long as the whole fits into memory, or else what memory allows for].
     #[arg(long, value_name = "LENGTH", value_parser = values::length, help_heading = "Tiles")]
     pub tile: Option<Length>,
     /// Tiles at a time [default: one for each thread, as far as memory goes].

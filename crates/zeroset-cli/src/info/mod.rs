@@ -15,7 +15,6 @@ use zeroset_io::{CloudFormat, IoError, LinearUnit, MeshFormat, ReadReport, is_mo
 use self::model::ModelInfo;
 use crate::args::InfoArgs;
 use crate::asprs::class_name;
-use crate::cloud_box::bounds;
 use crate::compare::topologies;
 use crate::console::Console;
 use crate::error::CliError;
@@ -175,7 +174,7 @@ impl CloudInfo {
             points_declared: report.as_ref().and_then(|r| r.points_declared),
             non_finite: report.as_ref().map_or(0, |r| r.non_finite),
             withheld: report.as_ref().map_or(0, |r| r.withheld),
-            bounds: bounds(cloud),
+            bounds: cloud.bounds(),
             spacing: Spacing::of(cloud),
             classes,
             attributes: attribute_names(&cloud.attributes),

@@ -8,7 +8,6 @@ use zeroset_io::{NO_CLASS, ReadReport, Source, shown};
 
 use super::{Dropped, Filters, Input};
 use crate::args::InputArgs;
-use crate::cloud_box::bounds;
 use crate::error::{CliError, in_words};
 use crate::interrupt;
 use crate::table::{count, position};
@@ -30,7 +29,7 @@ pub(super) fn select(
         exclude_classes: filters.exclude.clone(),
         bounds: args.bounds.map(|b| b.0),
     };
-    let (before, extent) = (cloud.len(), bounds(&cloud));
+    let (before, extent) = (cloud.len(), cloud.bounds());
     let by = filter.apply(&mut cloud);
     let mut dropped = Dropped {
         non_finite: read.non_finite,

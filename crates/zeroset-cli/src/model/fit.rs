@@ -14,7 +14,7 @@ use crate::console::{Console, Lines};
 use crate::error::CliError;
 use crate::input::{Input, Origin};
 use crate::progress::with_progress;
-use crate::reconstruct::{check_files, failed, known, params, planned};
+use crate::reconstruct::{check_files, failed, known, params, planned, say_capped};
 use crate::report::write_report;
 use crate::table::{bytes, count, length, name, significant};
 use crate::threads;
@@ -32,6 +32,7 @@ pub(crate) fn run(args: &FitArgs) -> Result<(), CliError> {
     params.constraints = known::place(lines_and_polygons, &args.fit.constraints, &input.cloud, &mut lines)?;
 
     let plan = planned(&input.cloud, &params, &args.input, &args.fit, console, &mut lines)?;
+    say_capped(&plan.report, &mut lines);
     let done = with_progress(console, |progress| plan.fit(progress))?;
     let (fitted, report) = done.map_err(|source| failed(&args.input, source))?;
     let names = args.input.inputs.iter().map(|path| own_name(path)).collect();

@@ -7,7 +7,6 @@ use zeroset::constraint::Constraints;
 use zeroset_io::{ConstraintFile, ConstraintFormat, read_constraints, shown};
 
 use crate::args::{FitOptions, PolygonsChoice};
-use crate::cloud_box::bounds;
 use crate::console::Lines;
 use crate::error::CliError;
 use crate::input::check_is_file;
@@ -43,7 +42,7 @@ pub(crate) fn place(
     lines: &mut Lines,
 ) -> Result<Constraints, CliError> {
     let mut all = Constraints::default();
-    let Some(around) = bounds(cloud) else { return Ok(all) };
+    let Some(around) = cloud.bounds() else { return Ok(all) };
     for (file, path) in files.into_iter().zip(paths) {
         let used = file.constraints.within(around);
         if used.is_idle() {

@@ -26,6 +26,9 @@ use crate::progress::{Progress, with_progress};
 use crate::report::{OutputReport, Report, Seconds};
 use crate::{memory, threads};
 
+/// What is said before ground is made in tiles without being asked to.
+const IN_TILES: &str = "note: the whole takes more memory than there is, so it is made in tiles";
+
 pub(crate) fn run(args: &ReconstructArgs) -> Result<(), CliError> {
     let start = Instant::now();
     let console = Console::of(&args.run);
@@ -37,10 +40,10 @@ pub(crate) fn run(args: &ReconstructArgs) -> Result<(), CliError> {
     };
     let known = known::read(&args.fit)?;
     threads::start(args.run.threads)?;
-    if tiles::are_asked_for(args) {
-        let mut constraints = Constraints::default();
-        known.into_iter().for_each(|file| constraints.append(file.constraints));
-        return tiles::reconstruct(args, params, constraints, console);
+    let mut of_tiles = params.clone();
+    known.iter().for_each(|file| of_tiles.constraints.append(file.constraints.clone()));
+    if tiles::are_asked_for(args) || tiles::are_needed(args, &params) {
+        return tiles::reconstruct(args, &of_tiles, console);
     }
 
     let (mut input, reading) = Input::read(&args.input, console)?;
@@ -53,7 +56,19 @@ pub(crate) fn run(args: &ReconstructArgs) -> Result<(), CliError> {
     params.constraints = known::place(known, &args.fit.constraints, &input.cloud, &mut lines)?;
 
     let planning = Instant::now();
-    let plan = planned(&input.cloud, &params, &args.input, &args.fit, console, &mut lines)?;
+    let plan = planned(&input.cloud, &params, &args.input, &args.fit, console, &mut lines);
+    if tiles::are_called_for(args, &plan, &params) {
+        let refused = plan.err();
+        drop(input);
+        console.say(IN_TILES);
+        return match (tiles::reconstruct(args, &of_tiles, console), refused) {
+            // What is no ground has to fit into memory.
+            (Err(CliError::Reconstruct { source: ReconstructError::TilesOfBody, .. }), Some(refused)) => Err(refused),
+            (made, _) => made,
+        };
+    }
+    let plan = plan?;
+    say_capped(&plan.report, &mut lines);
     seconds.plan = planning.elapsed().as_secs_f64();
 
     if args.dry_run {
@@ -175,10 +190,14 @@ pub(crate) fn planned<'a>(
         }
         lines.say(announced(report.scene, &report.scene_reason));
     }
+    Ok(plan)
+}
+
+/// Says if memory made cells larger.
+pub(crate) fn say_capped(report: &PlanReport, lines: &mut Lines) {
     if let Some(wanted) = report.wanted_resolution {
         lines.say(text::capped(report, wanted));
     }
-    Ok(plan)
 }
 
 /// The error with the names of the files that it is about.

@@ -6,8 +6,10 @@ use std::process::{Command, Stdio};
 use std::time::Duration;
 
 use serde_json::Value;
+use zeroset::cloud::Cloud;
 use zeroset::mesh::{Mesh, topology};
-use zeroset_io::read_mesh;
+use zeroset::sample::{Scene, SceneKind};
+use zeroset_io::{WriteOptions, read_mesh, write_cloud};
 
 use crate::common::{folder, line};
 
@@ -78,7 +80,7 @@ fn tiles_meet_bit_for_bit_and_their_lists_tell_of_them() {
     let names: Vec<&str> = made.keys().map(String::as_str).collect();
     let tiles = ["tiles/-1_-1.glb", "tiles/-1_0.glb", "tiles/0_-1.glb", "tiles/0_0.glb"];
     let lists = ["plan.json", "run.json", "sorted.json"];
-    assert_eq!(names, [&lists[..], &["tiles.json"], &tiles[..], &["tileset.json"]].concat());
+    assert_eq!(names, [&["done.json"], &lists[..], &["tiles.json"], &tiles[..], &["tileset.json"]].concat());
     let tileset: Value = serde_json::from_slice(&made["tileset.json"]).unwrap();
     let children = tileset["root"]["children"].as_array().unwrap();
     assert_eq!((tileset["asset"]["version"].as_str(), children.len()), (Some("1.1"), 4));
@@ -185,4 +187,96 @@ fn folders_and_options_that_do_not_fit_are_refused_in_one_line() {
     )
     .ok();
     refused("-o begun/ --tile 1.1 --resolution 0.01", &["begun", "other inputs or options"]);
+}
+
+#[test]
+fn a_folder_that_is_finished_says_so_and_stays_as_it_is() {
+    let folder = folder();
+    city(folder.path());
+    let run = RUN.replace(" -q", " -o out/ --report out.json");
+    line(folder.path(), &run).ok();
+    let made = files(&folder.path().join("out"));
+    let first = std::fs::read(folder.path().join("out.json")).unwrap();
+    let said = line(folder.path(), &run).ok().stderr;
+    assert!(said.contains("out/: ") && said.contains("4 tiles") && said.contains("are there already"), "{said}");
+    assert!(files(&folder.path().join("out")) == made);
+    let [first, again]: [Value; 2] =
+        [first, std::fs::read(folder.path().join("out.json")).unwrap()].map(|b| serde_json::from_slice(&b).unwrap());
+    assert_eq!((&again["tiles"], &again["plan"]), (&first["tiles"], &first["plan"]));
+}
+
+#[test]
+fn constraints_are_held_against_the_points_of_tiles_whatever_else_is_given() {
+    let folder = folder();
+    city(folder.path());
+    std::fs::write(folder.path().join("far.obj"), "v 900 900 0\nv 901 900 0\nv 901 901 0\nf 1 2 3\n").unwrap();
+    std::fs::write(folder.path().join("near.obj"), "v 0 0 .5\nv .1 0 .5\nv .1 .1 .5\nf 1 2 3\n").unwrap();
+    for (name, resolution) in [("free", ""), ("given", "--resolution 0.008")] {
+        let run = format!("reconstruct a.xyz b.xyz --tile 1.6 {resolution} --quality draft --scene airborne -q");
+        let said = line(folder.path(), &format!("{run} -o far/ --constraints far.obj")).failed("a.xyz");
+        assert!(said.contains("constraint"), "{said}");
+        line(folder.path(), &format!("{run} -o {name}/ --constraints near.obj")).ok();
+        let plan: Value =
+            serde_json::from_slice(&std::fs::read(folder.path().join(name).join("plan.json")).unwrap()).unwrap();
+        assert_eq!(plan["report"]["constraints"]["polygons"], 1, "{plan}");
+    }
+}
+
+#[test]
+fn ground_that_does_not_fit_into_memory_is_made_in_tiles() {
+    let folder = folder();
+    city(folder.path());
+    let run = "reconstruct a.xyz b.xyz --resolution 0.0015 --quality draft --scene airborne";
+    let said = line(folder.path(), &format!("{run} -o small.ply --memory 400MB --report small.json")).ok().stderr;
+    assert!(said.contains("more memory than there is") && said.contains(" tiles of 0.5 "), "{said}");
+    let report: Value = serde_json::from_slice(&std::fs::read(folder.path().join("small.json")).unwrap()).unwrap();
+    assert!(report["plan"]["tiles"].as_array().unwrap().len() > 1, "{report}");
+    assert!(!folder.path().join("small.ply.tiles").exists());
+    // No body is cut up.
+    let said = line(folder.path(), &format!("{} -o body.ply --memory 400MB", run.replace("airborne", "object")));
+    assert!(said.failed("a.xyz").contains("a resolution of 0.0015 needs about"));
+    assert!(!folder.path().join("body.ply.tiles").exists());
+}
+
+/// Without a side, tiles are as wide as memory allows for, and no input needs to be larger than a tile.
+#[test]
+fn tiles_are_as_wide_as_memory_allows() {
+    let folder = folder();
+    line(folder.path(), "sample airborne-city -o city.las --points 40000").ok();
+    let sides: Vec<f64> = ["10GB", "60MB"]
+        .into_iter()
+        .map(|memory| {
+            let run = format!("reconstruct city.las -o {memory}/ --memory {memory} --quality draft --report - -q");
+            let outcome = line(folder.path(), &run).ok();
+            serde_json::from_str::<Value>(&outcome.stdout).unwrap()["plan"]["side"].as_f64().unwrap()
+        })
+        .collect();
+    assert!(sides[0] > 1.0 && sides[1] < 1.0, "{sides:?}");
+    let said = line(folder.path(), "reconstruct city.las -o none/ --memory 1MB -q").failed("GB");
+    assert!(said.contains("--memory"), "{said}");
+    assert!(!folder.path().join("none").exists());
+}
+
+/// The city of the README, as it stands there: surveyed in metres on a national grid, in two files.
+#[test]
+fn the_command_of_the_readme_makes_a_city() {
+    let folder = folder();
+    let scene = Scene::new(SceneKind::AirborneCity, 0);
+    let points = scene.points(60_000, 0.0003, 1).points;
+    std::fs::create_dir(folder.path().join("city")).unwrap();
+    for (name, range) in [("east.laz", 0..30_000), ("west.laz", 30_000..60_000)] {
+        let world = |p: &[f64; 3]| [84_800.0 + 300.0 * p[0], 447_400.0 + 300.0 * p[1], 300.0 * p[2]];
+        let own = points[range].iter().map(world).collect();
+        let cloud = Cloud { crs: Some("EPSG:28992+5709".into()), ..Cloud::from_world(own) };
+        write_cloud(&folder.path().join("city").join(name), &cloud, &WriteOptions::default()).unwrap();
+    }
+    let readme = include_str!("../../../../README.md");
+    let command = readme.lines().find_map(|line| line.strip_prefix("zeroset reconstruct city/")).unwrap();
+    let command = format!("reconstruct city/{command}").replace("city/*.laz", "city/east.laz city/west.laz");
+    let said = line(folder.path(), &command).ok().stderr;
+    assert!(said.contains(" tiles of 250 from 60,000 points"), "{said}");
+    let made = files(&folder.path().join("city/tiles"));
+    let tileset: Value = serde_json::from_slice(&made["tileset.json"]).unwrap();
+    assert_eq!(tileset["asset"]["version"], "1.1");
+    assert!(made.keys().filter(|name| name.starts_with("tiles/")).count() >= 4, "{:?}", made.keys());
 }

@@ -24,41 +24,71 @@ pub(crate) struct Columns {
     pub(crate) notes: Vec<String>,
 }
 
+/// How many points were sifted, and what of them was left out.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Sifted {
+    read: u64,
+    kept: u64,
+    non_finite: u64,
+    withheld: u64,
+}
+
+impl Sifted {
+    pub(crate) fn and(self, other: Self) -> Self {
+        Self {
+            read: self.read + other.read,
+            kept: self.kept + other.kept,
+            non_finite: self.non_finite + other.non_finite,
+            withheld: self.withheld + other.withheld,
+        }
+    }
+}
+
 impl Columns {
     /// Leaves out what cannot be used, and checks the rest.
     pub(crate) fn finish(mut self, path: &Path, format: CloudFormat) -> Result<WorldCloud, IoError> {
-        let read = self.points.len() as u64;
-        if read == 0 && self.invalid == 0 {
-            return Err(IoError::NoPoints { path: path.to_path_buf() });
-        }
-        debug_assert!(crate::mesh::check_attributes(path, self.points.len(), &self.attributes).is_ok());
+        let sifted = self.sift(path, 0)?;
+        let report = self.report(path, format, sifted)?;
+        Ok(WorldCloud { points: self.points, attributes: self.attributes, crs: self.crs, report })
+    }
 
+    /// Leaves out what cannot be used. `first` is the place of the first point in its file.
+    pub(crate) fn sift(&mut self, path: &Path, first: u64) -> Result<Sifted, IoError> {
+        debug_assert!(crate::mesh::check_attributes(path, self.points.len(), &self.attributes).is_ok());
         let finite = |p: &[f64; 3]| p.iter().all(|c| c.is_finite());
-        let non_finite = self.points.iter().filter(|p| !finite(p)).count() as u64;
-        let withheld = self.withheld.iter().filter(|w| **w).count() as u64;
-        if non_finite > 0 || withheld > 0 {
-            let keep: Vec<bool> = if self.withheld.is_empty() {
-                self.points.iter().map(finite).collect()
-            } else {
-                self.points.iter().zip(&self.withheld).map(|(p, w)| finite(p) && !w).collect()
-            };
+        let is_withheld = |i: usize| self.withheld.get(i) == Some(&true);
+        let read = self.points.len() as u64;
+        let keep: Vec<bool> = self.points.iter().enumerate().map(|(i, p)| finite(p) && !is_withheld(i)).collect();
+        let count = |marks: &mut dyn Iterator<Item = bool>| marks.filter(|mark| *mark).count() as u64;
+        let sifted = Sifted {
+            read,
+            kept: count(&mut keep.iter().copied()),
+            non_finite: count(&mut self.points.iter().map(|p| !finite(p))),
+            withheld: count(&mut self.withheld.iter().copied()),
+        };
+        if sifted.kept < read {
             keep_marked(&mut self.points, &keep);
             keep_marked_in(&mut self.attributes.colors, &keep);
             keep_marked_in(&mut self.attributes.intensities, &keep);
             keep_marked_in(&mut self.attributes.classes, &keep);
         }
-        if self.points.is_empty() {
-            let (path, points) = (path.to_path_buf(), read + self.invalid);
-            return Err(if withheld > 0 && non_finite == 0 {
-                IoError::AllWithheld { path, points }
-            } else {
-                IoError::NoFinitePoints { path, points }
+        check_size(path, "point", &self.points, first)?;
+        Ok(sifted)
+    }
+
+    /// What there is to say about all that was sifted; the columns are those of the last part. An error if nothing is left.
+    pub(crate) fn report(&self, path: &Path, format: CloudFormat, sifted: Sifted) -> Result<ReadReport, IoError> {
+        let (points_read, points) = (sifted.kept, sifted.read + self.invalid);
+        let (non_finite, withheld) = (sifted.non_finite + self.invalid, sifted.withheld);
+        if points_read == 0 {
+            let path = path.to_path_buf();
+            return Err(match (points, withheld, non_finite) {
+                (0, ..) => IoError::NoPoints { path },
+                (_, 1.., 0) => IoError::AllWithheld { path, points },
+                _ => IoError::NoFinitePoints { path, points },
             });
         }
-        check_size(path, "point", &self.points)?;
-
-        let (points_read, non_finite) = (self.points.len() as u64, non_finite + self.invalid);
-        let report = ReadReport {
+        Ok(ReadReport {
             format,
             sources: vec![Source {
                 path: path.to_path_buf(),
@@ -74,21 +104,20 @@ impl Columns {
             withheld,
             unit: self.unit,
             crs: self.crs.clone(),
-            facts: self.facts,
-            notes: self.notes,
-        };
-        Ok(WorldCloud { points: self.points, attributes: self.attributes, crs: self.crs, report })
+            facts: self.facts.clone(),
+            notes: self.notes.clone(),
+        })
     }
 }
 
-/// Refuses coordinates beyond [`MAX_COORDINATE`]. They are finite here.
-pub(crate) fn check_size(path: &Path, item: &'static str, points: &[[f64; 3]]) -> Result<(), IoError> {
+/// Refuses coordinates beyond [`MAX_COORDINATE`]. They are finite here. `first` is the place of the first in its file.
+pub(crate) fn check_size(path: &Path, item: &'static str, points: &[[f64; 3]], first: u64) -> Result<(), IoError> {
     for (index, point) in points.iter().enumerate() {
         if let Some(value) = point.iter().find(|c| c.abs() > MAX_COORDINATE) {
             return Err(IoError::TooLarge {
                 path: path.to_path_buf(),
                 item,
-                index: index as u64,
+                index: first + index as u64,
                 value: *value,
                 limit: MAX_COORDINATE,
             });
@@ -126,13 +155,18 @@ pub(crate) fn colors_from_values(values: &[[f32; 3]]) -> Vec<[u8; 3]> {
     values.iter().map(|v| v.map(|c| (c * factor).round() as u8)).collect()
 }
 
-/// As [`colors_from_values`] for integers.
-pub(crate) fn colors_from_u16(values: &[[u16; 3]]) -> Vec<[u8; 3]> {
-    if values.iter().flatten().all(|v| *v <= 255) {
-        values.iter().map(|v| v.map(|c| c as u8)).collect()
-    } else {
+/// Whether colours need 16 bits.
+pub(crate) fn is_wide<'a>(mut channels: impl Iterator<Item = &'a u16>) -> bool {
+    channels.any(|v| *v > 255)
+}
+
+/// As [`colors_from_values`] for integers, of which some are known to need 16 bits.
+pub(crate) fn colors_from_u16(values: &[[u16; 3]], are_wide: bool) -> Vec<[u8; 3]> {
+    if are_wide {
         // 65535 = 255 * 257, so this rounds to the nearest.
         values.iter().map(|v| v.map(|c| ((u32::from(c) + 128) / 257) as u8)).collect()
+    } else {
+        values.iter().map(|v| v.map(|c| c as u8)).collect()
     }
 }
 
@@ -152,8 +186,9 @@ mod tests {
         assert_eq!(colors_from_values(&[[0.0, 128.0, 255.0]]), [[0, 128, 255]]);
         assert_eq!(colors_from_values(&[[0.0, 32896.0, 65535.0]]), [[0, 128, 255]]);
         assert_eq!(colors_from_values(&[[f32::NAN, -3.0, 255.0]]), [[0, 0, 255]]);
-        assert_eq!(colors_from_u16(&[[0, 128, 255]]), [[0, 128, 255]]);
-        assert_eq!(colors_from_u16(&[[0, 0x8080, 0xFFFF]]), [[0, 0x80, 0xFF]]);
+        assert_eq!(colors_from_u16(&[[0, 128, 255]], false), [[0, 128, 255]]);
+        assert_eq!(colors_from_u16(&[[0, 0x8080, 0xFFFF]], true), [[0, 0x80, 0xFF]]);
+        assert!(is_wide([255, 256].iter()) && !is_wide([0, 255].iter()));
     }
 
     #[test]

@@ -3,6 +3,7 @@
 mod columns;
 mod e57;
 pub(crate) mod las;
+mod parts;
 mod pcd;
 pub(crate) mod ply;
 mod report;
@@ -11,6 +12,7 @@ mod write;
 
 use std::path::{Path, PathBuf};
 
+pub use parts::{CloudPart, CloudSize, cloud_size, read_cloud_parts};
 pub use report::{CloudFile, LinearUnit, NO_CLASS, NO_COLOR, NO_INTENSITY, ReadReport, Source};
 pub use write::write_cloud;
 

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use zeroset::cloud::Attributes;
 
 use super::Columns;
-use super::columns::{class_from_value, colors_from_u16, colors_from_values};
+use super::columns::{class_from_value, colors_from_u16, colors_from_values, is_wide};
 use super::report::LinearUnit;
 use crate::IoError;
 use crate::ply::body::Body;
@@ -119,7 +119,7 @@ fn decode(layout: &VertexLayout, records: &[u8], stride: usize, encoding: Encodi
             rows().map(|row| color.map(|(at, _)| row[at])).collect()
         } else if color.iter().all(|(_, kind)| *kind == Scalar::U16) {
             let wide: Vec<_> = rows().map(|row| color.map(|place| value(row, place) as u16)).collect();
-            colors_from_u16(&wide)
+            colors_from_u16(&wide, is_wide(wide.iter().flatten()))
         } else {
             let wide: Vec<_> = rows().map(|row| color.map(|place| value(row, place) as f32)).collect();
             colors_from_values(&wide)

@@ -58,10 +58,7 @@ pub fn write_cloud(path: &Path, cloud: &Cloud, options: &WriteOptions) -> Result
             };
             write(&|sink| crate::mesh::write_ply_points(sink, &mesh, options, &[]))?
         }
-        CloudFormat::Las | CloudFormat::Laz => {
-            let file = las::encode(path, format, cloud, options)?;
-            write(&|sink| sink.write_all(&file))?
-        }
+        CloudFormat::Las | CloudFormat::Laz => write(&|sink| las::write(sink, format, cloud, options))?,
         CloudFormat::Pcd | CloudFormat::E57 => {
             let remedy = "use las, laz, ply, xyz or pts";
             return Err(IoError::NotOffered {

@@ -59,7 +59,7 @@ fn finish(path: &Path, mut mesh: Mesh) -> Result<Mesh, IoError> {
         return Err(IoError::malformed(path, "the file holds no vertices", "check the program that wrote it"));
     }
     check_points(path, "vertex", &mesh.vertices)?;
-    crate::cloud::check_size(path, "vertex", &mesh.vertices)?;
+    crate::cloud::check_size(path, "vertex", &mesh.vertices, 0)?;
     let offset = choose_offset(mesh.vertices.iter().copied());
     for vertex in &mut mesh.vertices {
         for axis in 0..3 {

@@ -157,7 +157,7 @@ pub fn read_positions_bytes(path: &Path, format: PositionFormat, bytes: Vec<u8>)
             if positions.is_empty() {
                 return Err(IoError::NoFinitePoints { path: path.to_path_buf(), points: read as u64 });
             }
-            check_size(path, "point", &positions)?;
+            check_size(path, "point", &positions, 0)?;
             let left_out = (read - positions.len()) as u64;
             Ok(PositionFile { positions, left_out, ..PositionFile::default() })
         }

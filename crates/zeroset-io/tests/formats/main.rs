@@ -10,6 +10,7 @@ mod features;
 mod fuzz_seeds;
 mod meshes;
 mod models;
+mod parts;
 mod planar;
 mod rasters;
 mod real_files;

@@ -74,6 +74,16 @@ impl Cloud {
         self.attributes.append(other.attributes, count);
     }
 
+    /// Lowest and highest coordinates in the world; `None` without points.
+    #[must_use]
+    pub fn bounds(&self) -> Option<[[f64; 3]; 2]> {
+        let first = *self.points.first()?;
+        let local = self.points.iter().fold([first; 2], |[low, high], p| {
+            [std::array::from_fn(|a| low[a].min(p[a])), std::array::from_fn(|a| high[a].max(p[a]))]
+        });
+        Some(local.map(|p| std::array::from_fn(|a| p[a] + self.world_from_local[a])))
+    }
+
     /// World position of point `i`.
     #[must_use]
     pub fn world(&self, i: usize) -> [f64; 3] {

@@ -24,7 +24,7 @@ mod structure;
 
 pub use crate::fit::Up;
 pub use crate::model::AttributeChoice;
-pub(crate) use plan::{LEAST_POINTS, Measured};
+pub(crate) use plan::{LEAST_POINTS, Measured, expected_bytes};
 pub use plan::{MinComponent, Plan, PlanReport, ReconstructParams, Resolution, Trim, plan};
 pub use quality::Quality;
 pub(crate) use run::{Beyond, Shaped, shape};

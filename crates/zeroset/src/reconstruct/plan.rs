@@ -397,7 +397,7 @@ pub fn plan<'a>(
 }
 
 /// Peak bytes of a run.
-pub(super) fn expected_bytes(quality: Quality, cells: usize, points: usize) -> f64 {
+pub(crate) fn expected_bytes(quality: Quality, cells: usize, points: usize) -> f64 {
     let a_cell = if quality == Quality::Draft { BYTES_A_DRAFT_CELL } else { BYTES_A_CELL };
     a_cell * cells as f64 + BYTES_A_POINT * points as f64
 }

@@ -21,6 +21,7 @@
 //! - [`Strip`]: F beside the faces of a tile, for its neighbours.
 //! - [`TilePlan::mesh`]: F made the same as the neighbours', and its zero set, sharp, with the vertices that are shared.
 //! - [`merge`]: tiles as one mesh.
+//! - [`TileMemory`]: how wide tiles may be.
 //!
 //! Where the steps run, and where their results are kept meanwhile, is the caller's: [`reconstruct`] does all in memory and shows how
 //! they fit together.
@@ -41,6 +42,7 @@ mod extract;
 mod fit;
 mod gather;
 mod layout;
+mod memory;
 mod merge;
 mod plan;
 mod run;
@@ -52,6 +54,7 @@ mod tests;
 pub use agree::Strip;
 pub use extract::TileMesh;
 pub use fit::{TileFit, TileFitReport};
+pub use memory::TileMemory;
 pub use merge::merge;
 pub use plan::{Measurement, TileId, TilePlan};
 pub use run::reconstruct;

@@ -92,7 +92,7 @@ pub struct Measurement<'a> {
 }
 
 /// A tile has at least so many nodes along a side: halos and the gaps that the trim bridges are smaller.
-const LEAST_NODES: f64 = 128.0;
+pub(super) const LEAST_NODES: f64 = 128.0;
 
 impl TilePlan {
     /// Resolves every default.

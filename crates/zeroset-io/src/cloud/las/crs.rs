@@ -29,8 +29,8 @@ mod key {
 }
 
 /// WKT where there is any, else the GeoTIFF keys.
-pub(super) fn find(records: &[VariableRecord<'_>]) -> System {
-    let data = |id: u16| records.iter().find(|r| r.user == USER && r.id == id).map(|r| r.data);
+pub(super) fn find(records: &[VariableRecord]) -> System {
+    let data = |id: u16| records.iter().find(|r| r.user == USER && r.id == id).map(|r| &r.data[..]);
     let wkt = data(WKT).map(|bytes| String::from_utf8_lossy(bytes).trim_matches(['\0', ' ', '\r', '\n']).to_string());
     if let Some(wkt) = wkt.filter(|wkt| !wkt.is_empty()) {
         let unit = unit_of_wkt(&wkt);

@@ -1,28 +1,29 @@
 //! The public header block and the variable length records.
 
+use std::ops::Range;
 use std::path::Path;
 
 use crate::IoError;
 use crate::format::sniff;
-use crate::input::{Fields, fixed_text};
+use crate::input::{Fields, Source, fixed_text};
 
 /// A variable length record, ordinary or extended.
 #[derive(Debug)]
-pub(super) struct VariableRecord<'a> {
+pub(super) struct VariableRecord {
     pub(super) user: String,
     pub(super) id: u16,
-    pub(super) data: &'a [u8],
+    pub(super) data: Vec<u8>,
 }
 
 /// What of the header matters here.
 #[derive(Debug)]
-pub(super) struct Header<'a> {
+pub(super) struct Header {
     version: (u8, u8),
     system: String,
     software: String,
     /// Day of the year and year.
     created: (u16, u16),
-    pub(super) points_at: usize,
+    pub(super) points_at: u64,
     /// 0 to 10.
     pub(super) point_format: u8,
     pub(super) compressed: bool,
@@ -30,14 +31,28 @@ pub(super) struct Header<'a> {
     pub(super) point_count: u64,
     pub(super) scale: [f64; 3],
     pub(super) offset: [f64; 3],
-    pub(super) records: Vec<VariableRecord<'a>>,
+    /// Lowest and highest coordinates, as stated.
+    pub(super) bounds: [[f64; 3]; 2],
+    /// Those that say something about the points.
+    pub(super) records: Vec<VariableRecord>,
 }
+
+/// Bytes of the longest header.
+const LONGEST: u64 = 375;
+/// Bytes in front of the data of a record, ordinary and extended.
+const RECORD_HEADS: [u64; 2] = [54, 60];
+/// Users whose records matter here. Others may be as large as the points.
+const USERS: [&str; 3] = ["LASF_Projection", "laszip encoded", "copc"];
 
 /// Bytes of a record of each point format, without extra bytes.
 const RECORD_LENGTHS: [u16; 11] = [20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67];
 
-impl<'a> Header<'a> {
-    pub(super) fn parse(path: &Path, format: &'static str, bytes: &'a [u8]) -> Result<Self, IoError> {
+impl Header {
+    pub(super) fn parse(path: &Path, format: &'static str, source: &mut dyn Source) -> Result<Self, IoError> {
+        let failed = |error| IoError::from_system(path, error);
+        let length_of_file = source.length();
+        let front = source.get(0..LONGEST.min(length_of_file)).map_err(failed)?.into_owned();
+        let bytes = &front[..];
         if !bytes.starts_with(b"LASF") {
             if b"LASF".starts_with(bytes) {
                 return Err(IoError::truncated(path, "header", 227, bytes.len() as u64));
@@ -63,7 +78,10 @@ impl<'a> Header<'a> {
             for value in &mut six {
                 *value = rest.f64()?;
             }
-            rest.take(48)?;
+            let mut bounds = [[0.0; 3]; 2];
+            for axis in 0..3 {
+                [bounds[1][axis], bounds[0][axis]] = [rest.f64()?, rest.f64()?];
+            }
             Some((
                 system,
                 software,
@@ -75,9 +93,10 @@ impl<'a> Header<'a> {
                 record_length,
                 legacy_count,
                 six,
+                bounds,
             ))
         };
-        let (system, software, created, header_size, points_at, record_count, raw_format, length, legacy, six) =
+        let (system, software, created, header_size, points_at, record_count, raw_format, length, legacy, six, bounds) =
             read().ok_or_else(short(227))?;
 
         if version[0] != 1 || version[1] > 4 {
@@ -118,13 +137,13 @@ impl<'a> Header<'a> {
             }
         }
 
-        let points_at = points_at as usize;
+        let points_at = u64::from(points_at);
         let least_header = if is_1_4 { 375 } else { 227 };
-        if usize::from(header_size) < least_header || points_at < usize::from(header_size) {
+        if header_size < least_header || points_at < u64::from(header_size) {
             return Err(IoError::damaged(path, "the LAS header states an impossible size of itself"));
         }
-        if points_at > bytes.len() {
-            return Err(IoError::truncated(path, "header", points_at as u64, bytes.len() as u64));
+        if points_at > length_of_file {
+            return Err(IoError::truncated(path, "header", points_at, length_of_file));
         }
         let mut header = Self {
             version: (version[0], version[1]),
@@ -138,39 +157,48 @@ impl<'a> Header<'a> {
             point_count,
             scale,
             offset,
+            bounds,
             records: Vec::new(),
         };
-        header.read_records(&bytes[..points_at], usize::from(header_size), u64::from(record_count), Kind::Ordinary);
-        if let Some((first, count)) = extended
-            && let Ok(first) = usize::try_from(first)
-            && first >= points_at
-        {
-            header.read_records(bytes, first, u64::from(count), Kind::Extended);
+        let ordinary = u64::from(header_size)..points_at;
+        header.read_records(source, ordinary, record_count, Kind::Ordinary).map_err(failed)?;
+        if let Some((first, count)) = extended.filter(|(first, _)| *first >= points_at) {
+            header.read_records(source, first..length_of_file, count, Kind::Extended).map_err(failed)?;
         }
         Ok(header)
     }
 
     /// Collects records until the count or the bytes end. They only carry additions to the points, so records that are
     /// damaged are passed over; the ones that decoding needs are asked for where they are needed.
-    fn read_records(&mut self, bytes: &'a [u8], start: usize, count: u64, kind: Kind) {
-        let mut fields = Fields::at(bytes, start);
-        let mut next = || {
-            fields.take(2)?;
-            let user = fixed_text(fields.take(16)?);
-            let id = fields.u16()?;
-            let length = match kind {
-                Kind::Ordinary => usize::from(fields.u16()?),
-                Kind::Extended => usize::try_from(fields.u64()?).ok()?,
-            };
-            fields.take(32)?;
-            Some(VariableRecord { user, id, data: fields.take(length)? })
-        };
+    fn read_records(
+        &mut self,
+        source: &mut dyn Source,
+        place: Range<u64>,
+        count: u32,
+        kind: Kind,
+    ) -> std::io::Result<()> {
+        let (mut at, head_length) = (place.start, RECORD_HEADS[kind as usize]);
         for _ in 0..count {
-            match next() {
-                Some(record) => self.records.push(record),
-                None => break,
+            let Some(data_at) = at.checked_add(head_length).filter(|end| *end <= place.end) else { break };
+            let head = source.get(at..data_at)?;
+            let mut fields = Fields::new(&head);
+            let mut read = || {
+                fields.take(2)?;
+                let user = fixed_text(fields.take(16)?);
+                let id = fields.u16()?;
+                let length = match kind {
+                    Kind::Ordinary => u64::from(fields.u16()?),
+                    Kind::Extended => fields.u64()?,
+                };
+                Some((user, id, data_at.checked_add(length).filter(|end| *end <= place.end)?))
+            };
+            let Some((user, id, end)) = read() else { break };
+            if USERS.contains(&user.as_str()) {
+                self.records.push(VariableRecord { user, id, data: source.get(data_at..end)?.into_owned() });
             }
+            at = end;
         }
+        Ok(())
     }
 
     pub(super) fn point_format_has_rgb(&self) -> bool {

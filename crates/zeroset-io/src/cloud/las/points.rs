@@ -5,7 +5,7 @@ use zeroset::cloud::Attributes;
 
 use super::header::Header;
 use crate::cloud::Columns;
-use crate::cloud::columns::colors_from_u16;
+use crate::cloud::columns::{colors_from_u16, is_wide};
 
 /// Where the values of interest are in a record.
 #[derive(Debug, Clone, Copy)]
@@ -19,7 +19,7 @@ pub(super) struct Record {
 }
 
 impl Record {
-    pub(super) fn of(header: &Header<'_>) -> Self {
+    pub(super) fn of(header: &Header) -> Self {
         let color_at = match header.point_format {
             2 => Some(20),
             3 | 5 => Some(28),
@@ -38,12 +38,31 @@ impl Record {
 
 /// The columns while they are filled, in parallel and in any order.
 #[derive(Debug, Default)]
-pub(super) struct Table {
+pub(crate) struct Table {
     points: Vec<[f64; 3]>,
     intensities: Vec<u16>,
     classes: Vec<u8>,
     withheld: Vec<bool>,
     colors: Vec<[u16; 3]>,
+}
+
+/// What only all rows of a file tell of its values. A column of zeros is there only because the format asks for it.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(crate) struct Values {
+    has_intensities: bool,
+    has_colors: bool,
+    /// Whether colours need 16 bits.
+    wide_colors: bool,
+}
+
+impl Values {
+    pub(crate) fn or(self, other: Self) -> Self {
+        Self {
+            has_intensities: self.has_intensities || other.has_intensities,
+            has_colors: self.has_colors || other.has_colors,
+            wide_colors: self.wide_colors || other.wide_colors,
+        }
+    }
 }
 
 /// A run of rows of the table.
@@ -56,6 +75,10 @@ pub(super) struct Rows<'a> {
 }
 
 impl Table {
+    pub(crate) fn len(&self) -> usize {
+        self.points.len()
+    }
+
     pub(super) fn resize(&mut self, count: usize, record: &Record) {
         self.points.resize(count, [0.0; 3]);
         self.intensities.resize(count, 0);
@@ -89,11 +112,20 @@ impl Table {
         });
     }
 
-    pub(super) fn into_columns(self) -> Columns {
-        let varies = |values: &[u16]| values.iter().any(|v| *v != 0);
-        let intensities = varies(&self.intensities).then(|| self.intensities.iter().map(|v| f32::from(*v)).collect());
-        // A file of zeros has the column only because the format asks for it.
-        let colors = self.colors.iter().any(|c| *c != [0; 3]).then(|| colors_from_u16(&self.colors));
+    /// What the rows tell of the values of the file.
+    pub(crate) fn values(&self) -> Values {
+        let colors = self.colors.iter().flatten();
+        Values {
+            has_intensities: self.intensities.iter().any(|v| *v != 0),
+            has_colors: colors.clone().any(|v| *v != 0),
+            wide_colors: is_wide(colors),
+        }
+    }
+
+    /// The rows, as part of a file that has these values.
+    pub(super) fn into_columns(self, values: Values) -> Columns {
+        let intensities = values.has_intensities.then(|| self.intensities.iter().map(|v| f32::from(*v)).collect());
+        let colors = values.has_colors.then(|| colors_from_u16(&self.colors, values.wide_colors));
         let classes = Some(self.classes);
         let withheld = if self.withheld.contains(&true) { self.withheld } else { Vec::new() };
         Columns {

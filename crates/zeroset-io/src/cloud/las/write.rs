@@ -1,15 +1,15 @@
 //! Writing LAS 1.4 and LAZ.
 
-use std::io::Cursor;
-use std::path::Path;
+use std::ops::Range;
 
 use laz::{LazItemRecordBuilder, LazVlr, ParLasZipCompressor};
 use rayon::prelude::*;
 use zeroset::cloud::Cloud;
 
+use crate::CloudFormat;
 use crate::mesh::{WriteOptions, tolerance, world};
 use crate::number::decimals_for;
-use crate::{CloudFormat, IoError};
+use crate::output::Sink;
 
 const HEADER: u16 = 375;
 /// Bytes in front of the data of a variable length record.
@@ -57,14 +57,16 @@ fn power_of_ten(exponent: i32) -> f64 {
     if exponent < 0 { 1.0 / 10_f64.powi(-exponent) } else { 10_f64.powi(exponent) }
 }
 
-/// The whole file.
-pub(crate) fn encode(
-    path: &Path,
+/// Points that are encoded at a time.
+const RUN: usize = 1 << 18;
+
+/// Writes the whole file, run by run.
+pub(crate) fn write(
+    sink: &mut dyn Sink,
     format: CloudFormat,
     cloud: &Cloud,
     options: &WriteOptions,
-) -> Result<Vec<u8>, IoError> {
-    let failed = |message: String| IoError::Decode { path: path.to_path_buf(), format: "LAZ", message };
+) -> std::io::Result<()> {
     let attributes = &cloud.attributes;
     let codes = cloud.crs.as_deref().and_then(epsg_codes);
     let small_classes = attributes.classes.as_ref().is_none_or(|classes| classes.iter().all(|c| *c < 32));
@@ -95,9 +97,9 @@ pub(crate) fn encode(
     }
     let settings = if format == CloudFormat::Laz {
         let items = LazItemRecordBuilder::default_for_point_format_id(point_format, 0);
-        let settings = LazVlr::from_laz_items(items.map_err(|e| failed(e.to_string()))?);
+        let settings = LazVlr::from_laz_items(items.map_err(std::io::Error::other)?);
         let mut data = Vec::new();
-        settings.write_to(&mut data).map_err(|e| failed(e.to_string()))?;
+        settings.write_to(&mut data).map_err(std::io::Error::other)?;
         records.push(record(LazVlr::USER_ID, LazVlr::RECORD_ID, &data));
         Some(settings)
     } else {
@@ -105,7 +107,7 @@ pub(crate) fn encode(
     };
 
     let points_at = usize::from(HEADER) + records.iter().map(Vec::len).sum::<usize>();
-    let mut file = header(&HeaderFields {
+    sink.write_all(&header(&HeaderFields {
         point_format: point_format | if settings.is_some() { 0x80 } else { 0 },
         length,
         points_at: points_at as u32,
@@ -114,56 +116,72 @@ pub(crate) fn encode(
         legacy,
         generator: &options.generator,
         grid: &grid,
-    });
-    file.extend(records.iter().flatten());
-    let bytes = encode_points(cloud, &grid, point_format, usize::from(length));
+    }))?;
+    records.iter().try_for_each(|record| sink.write_all(record))?;
+    let points = Points { cloud, grid: &grid, point_format, length: usize::from(length), stretch: stretch(cloud) };
+    let runs = (0..cloud.len()).step_by(RUN).map(|start| points.encode(start..cloud.len().min(start + RUN)));
     let Some(settings) = settings else {
-        file.extend_from_slice(&bytes);
-        return Ok(file);
+        return runs.into_iter().try_for_each(|run| sink.write_all(&run));
     };
-    let mut cursor = Cursor::new(file);
-    cursor.set_position(points_at as u64);
-    let mut compressor = ParLasZipCompressor::new(cursor, settings).map_err(|e| failed(e.to_string()))?;
-    compressor.compress_many(&bytes).map_err(|e| failed(e.to_string()))?;
-    compressor.done().map_err(|e| failed(e.to_string()))?;
-    Ok(compressor.into_inner().into_inner())
+    let mut compressor = ParLasZipCompressor::new(sink, settings).map_err(std::io::Error::other)?;
+    for run in runs {
+        compressor.compress_many(&run).map_err(std::io::Error::other)?;
+    }
+    compressor.done().map_err(std::io::Error::other)
 }
 
-fn encode_points(cloud: &Cloud, grid: &Grid, point_format: u8, length: usize) -> Vec<u8> {
-    let attributes = &cloud.attributes;
-    // The field has 16 bits: shares of one are stretched, all else is taken as it is.
-    let stretch = attributes.intensities.as_ref().map_or(1.0, |values| {
+/// What intensities are multiplied by. The field has 16 bits: shares of one are stretched, all else is taken as it is.
+fn stretch(cloud: &Cloud) -> f32 {
+    cloud.attributes.intensities.as_ref().map_or(1.0, |values| {
         let shares = values.iter().all(|v| (0.0..=1.0).contains(v)) && values.iter().any(|v| v.fract() != 0.0);
         if shares { 65535.0 } else { 1.0 }
-    });
-    let mut bytes = vec![0; length * cloud.len()];
-    bytes.par_chunks_exact_mut(length).enumerate().with_min_len(1 << 12).for_each(|(i, out)| {
-        for (axis, value) in world(cloud.points[i], cloud.world_from_local).into_iter().enumerate() {
-            out[4 * axis..4 * axis + 4].copy_from_slice(&grid.raw(value, axis).to_le_bytes());
-        }
-        if let Some(intensities) = &attributes.intensities {
-            let value = (intensities[i] * stretch).round() as u16;
-            out[12..14].copy_from_slice(&value.to_le_bytes());
-        }
-        let class = attributes.classes.as_ref().map_or(0, |classes| classes[i]);
-        // The first of one return.
-        let color_at = if point_format < 6 {
-            out[14] = 1 | 1 << 3;
-            out[15] = class;
-            20
-        } else {
-            out[14] = 1 | 1 << 4;
-            out[16] = class;
-            30
-        };
-        if let Some(colors) = &attributes.colors {
-            for (channel, value) in colors[i].into_iter().enumerate() {
-                let at = color_at + 2 * channel;
-                out[at..at + 2].copy_from_slice(&(u16::from(value) * 257).to_le_bytes());
+    })
+}
+
+/// Points as records.
+struct Points<'a> {
+    cloud: &'a Cloud,
+    grid: &'a Grid,
+    point_format: u8,
+    length: usize,
+    stretch: f32,
+}
+
+impl Points<'_> {
+    fn encode(&self, run: Range<usize>) -> Vec<u8> {
+        let Self { cloud, grid, point_format, length, stretch } = *self;
+        let attributes = &cloud.attributes;
+        let mut bytes = vec![0; length * run.len()];
+        let first = run.start;
+        bytes.par_chunks_exact_mut(length).enumerate().with_min_len(1 << 12).for_each(|(row, out)| {
+            let i = first + row;
+            for (axis, value) in world(cloud.points[i], cloud.world_from_local).into_iter().enumerate() {
+                out[4 * axis..4 * axis + 4].copy_from_slice(&grid.raw(value, axis).to_le_bytes());
             }
-        }
-    });
-    bytes
+            if let Some(intensities) = &attributes.intensities {
+                let value = (intensities[i] * stretch).round() as u16;
+                out[12..14].copy_from_slice(&value.to_le_bytes());
+            }
+            let class = attributes.classes.as_ref().map_or(0, |classes| classes[i]);
+            // The first of one return.
+            let color_at = if point_format < 6 {
+                out[14] = 1 | 1 << 3;
+                out[15] = class;
+                20
+            } else {
+                out[14] = 1 | 1 << 4;
+                out[16] = class;
+                30
+            };
+            if let Some(colors) = &attributes.colors {
+                for (channel, value) in colors[i].into_iter().enumerate() {
+                    let at = color_at + 2 * channel;
+                    out[at..at + 2].copy_from_slice(&(u16::from(value) * 257).to_le_bytes());
+                }
+            }
+        });
+        bytes
+    }
 }
 
 struct HeaderFields<'a> {
