@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use zeroset::tile::{TileId, TilePlan};
+use zeroset::tile::{NodeId, TileId, TilePlan};
 use zeroset_io::{IoError, write_atomically};
 
 use crate::binary::read;
@@ -113,6 +113,20 @@ impl Folder {
     /// Written last by the extraction of a tile.
     pub(crate) fn pieces(&self, tile: TileId) -> PathBuf {
         self.of_tile("mesh", tile, ".pieces")
+    }
+
+    /// The surface of a tile with fewer triangles.
+    pub(crate) fn simplified(&self, tile: TileId) -> PathBuf {
+        self.of_tile("simplified", tile, ".mesh")
+    }
+
+    pub(crate) fn level_mesh(&self, node: NodeId) -> PathBuf {
+        self.work().join(format!("levels/{node}.mesh"))
+    }
+
+    /// Written last of a square of tiles.
+    pub(crate) fn level_entry(&self, node: NodeId) -> PathBuf {
+        self.work().join(format!("levels/{node}.json"))
     }
 
     pub(crate) fn coarse(&self) -> PathBuf {

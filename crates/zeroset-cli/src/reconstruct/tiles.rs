@@ -11,9 +11,7 @@ use zeroset::monitor::Monitor;
 use zeroset::reconstruct::{Quality, ReconstructParams, Resolution};
 use zeroset::tile::TilePlan;
 use zeroset_io::{LinearUnit, MeshFormat, WriteOptions, read_cloud, shown, write_mesh};
-use zeroset_tiles::{
-    Crew, Folder, RunParams, Sorted, TileEntry, TileFormat, TileSeconds, TilesError, run, write_tiles,
-};
+use zeroset_tiles::{Crew, Folder, RunParams, Sorted, TileFormat, TileSeconds, TilesError, Written, run, write_tiles};
 
 use super::failed;
 use crate::args::{OrOff, ReconstructArgs, TileFormatChoice};
@@ -53,7 +51,7 @@ fn described(args: &ReconstructArgs) -> serde_json::Value {
         "zeroset_version": env!("CARGO_PKG_VERSION"),
         "inputs": files(&args.input.inputs),
         "constraints": files(&args.fit.constraints),
-        "options": format!("{:?}", (&args.input, &args.fit, args.attributes, args.tiles.tile)),
+        "options": format!("{:?}", (&args.input, &args.fit, args.attributes, args.tiles.tile, args.simplify.max_error)),
     })
 }
 
@@ -61,7 +59,8 @@ fn described(args: &ReconstructArgs) -> serde_json::Value {
 struct TilesReport<'a> {
     plan: &'a TilePlan,
     points: u64,
-    tiles: &'a [TileEntry],
+    #[serde(flatten)]
+    written: &'a Written,
     triangles: u64,
     jobs: usize,
     seconds: TileSeconds,
@@ -130,31 +129,32 @@ fn make(
     let memory_limit_bytes = params.memory;
     let params = ReconstructParams { constraints, ..params };
     let run_params = RunParams { reconstruct: params, jobs, threads };
-    let (plan, seconds, entries) = with_progress(console, |progress| -> Result<_, CliError> {
+    let (plan, seconds, written) = with_progress(console, |progress| -> Result<_, CliError> {
         let (plan, mut seconds) = run(folder, &sorted, &run_params, progress)?;
         let begun = Instant::now();
-        let entries = match merged {
+        let written = match merged {
             Some(file) => {
                 progress.stage(&format!("writing {}", shown(file)));
                 let mesh = folder.merged(&sorted, &plan)?;
                 let options = WriteOptions { resolution: Some(plan.report.resolution), ..WriteOptions::default() };
                 write_mesh(file, &mesh, &options)?;
-                Vec::new()
+                Written::default()
             }
             None => {
                 let crew = Crew { jobs, threads, monitor: progress };
                 write_tiles(folder, &sorted, &plan, format, &crew)?
             }
         };
-        seconds.write = begun.elapsed().as_secs_f64();
-        Ok((plan, seconds, entries))
+        seconds.levels = written.level_seconds;
+        seconds.write = begun.elapsed().as_secs_f64() - seconds.levels;
+        Ok((plan, seconds, written))
     })??;
     if merged.is_some() {
         folder.remove()?;
     } else if !args.tiles.keep_work {
         folder.remove_work()?;
     }
-    let triangles = entries.iter().map(|entry| entry.triangles).sum();
+    let triangles = written.tiles.iter().map(|entry| entry.triangles).sum();
     let total_seconds = start.elapsed().as_secs_f64();
     console.say(&format!(
         "{}: {}{} tiles of {} from {} points (resolution {}) in {} s",
@@ -171,7 +171,7 @@ fn make(
         TilesReport {
             plan: &plan,
             points: sorted.points,
-            tiles: &entries,
+            written: &written,
             triangles,
             jobs,
             seconds,
@@ -189,8 +189,8 @@ fn refuse(args: &ReconstructArgs) -> Result<(), CliError> {
     if matches!(args.input.outliers, OrOff::Value(_)) {
         return refused("--outliers", "leave it out, or use --exclude");
     }
-    if args.simplify.params().is_some() {
-        return refused("--triangles or --max-error", "use zeroset simplify on the tiles");
+    if args.simplify.triangles.is_some() {
+        return refused("--triangles", "give --max-error, or use zeroset simplify on one mesh of all tiles");
     }
     if args.dry_run {
         return refused("--dry-run", "leave out --tile to see the plan of the whole");
