@@ -44,7 +44,8 @@ def expected(inputs: list[Path], tmp_path_factory: pytest.TempPathFactory) -> di
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     found = contents(folder)
-    assert len([name for name in found if name.endswith(".glb")]) == 4
+    glb = [name for name in found if name.endswith(".glb")]
+    assert len(glb) == 5 and "levels/1/0_0.glb" in glb
     return found
 
 
@@ -59,8 +60,8 @@ def client() -> Iterator[Any]:
 
 
 def contents(folder: Path) -> dict[str, bytes]:
-    """What others read of a folder: tiles and their lists."""
-    names = [*folder.glob("tiles/*"), *folder.glob("tile*.json")]
+    """What others read of a folder: tiles, levels and their lists."""
+    names = [*folder.glob("tiles/*"), *folder.glob("levels/*/*"), *folder.glob("tile*.json")]
     return {path.relative_to(folder).as_posix(): path.read_bytes() for path in names}
 
 
@@ -101,6 +102,15 @@ def test_a_worker_is_lost(inputs: list[Path], expected: dict[str, bytes], client
     assert killed.is_set()
     assert not psutil.pid_exists(victim) or psutil.Process(victim).status() == psutil.STATUS_ZOMBIE
     assert contents(folder) == expected
+
+
+def test_simplified(inputs: list[Path], client: Any, tmp_path: Path) -> None:
+    part: Any = {**OPTIONS, "bounds": [[0.4, 0.4, -1.0], [0.7, 0.6, 1.0]]}
+    coarse, fine = tmp_path / "coarse", tmp_path / "fine"
+    simple = zeroset.dask.reconstruct(inputs, coarse, client=client, **part, max_error=0.002)
+    assert 0 < simple.triangles < zeroset.dask.reconstruct(inputs, fine, client=client, **part).triangles / 3
+    with pytest.raises(zeroset.ParameterError, match="max_error"):
+        zeroset.dask.reconstruct(inputs, tmp_path / "a", client=client, **part, max_error=-1.0, retries=0)
 
 
 def test_urls(inputs: list[Path], expected: dict[str, bytes], client: Any, tmp_path: Path) -> None:

@@ -154,7 +154,7 @@ class TileFolder:
         """
     def finish(self, /, entries: "str", options: "dict[str, Any]") -> "None":
         """
-        Writes the lists of the tiles that `write` wrote, which are given as JSON.
+        Writes the lists of the tiles that `write` wrote, which are given as JSON. All squares must be there.
         """
     def fit(self, /, tile: "tuple[int, int]", options: "dict[str, Any]") -> "None":
         """
@@ -163,6 +163,14 @@ class TileFolder:
     def is_sorted(self, /, input: "int") -> "bool":
         """
         Whether an input is sorted.
+        """
+    def level(self, /, square: "tuple[int, int, int]") -> "dict[str, Any] | None":
+        """
+        Makes and writes a square of tiles, if it has a surface. Its parts must be there: on the first level tiles, and those around them.
+        """
+    def levels(self, /) -> "list[list[tuple[tuple[int, int, int], list[tuple[int, int, int]]]]]":
+        """
+        The squares of tiles that are shown as one, level by level: each with its parts.
         """
     def mesh(self, /, tile: "tuple[int, int]") -> "None":
         """
@@ -184,6 +192,10 @@ class TileFolder:
         """
         Removes what steps handed on.
         """
+    def simplify(self, /, tile: "tuple[int, int]") -> "None":
+        """
+        Simplifies the surface of a tile, if that is asked for. It and those around it must be extracted.
+        """
     def sort(self, /, input: "int", path: "Any", side: "float", options: "dict[str, Any]") -> "None":
         """
         Sorts the points of a file into tiles.
@@ -194,7 +206,7 @@ class TileFolder:
         """
     def write(self, /, tile: "tuple[int, int]", options: "dict[str, Any]") -> "dict[str, Any] | None":
         """
-        Writes the surface of a tile, if it has one. It and those around it must be extracted.
+        Writes the surface of a tile, if it has one. It and those around it must be extracted, and it simplified if that is asked for.
         """
 
 def address(points: Any) -> "int":

@@ -11,8 +11,10 @@ same, bit for bit. It needs the packages ``distributed`` and ``fsspec``: ``pip i
 | ``zeroset-coarse`` | fits the coarse levels of the whole | all tiles thinned |
 | ``zeroset-fit`` | refines a tile | the coarse levels |
 | ``zeroset-mesh`` | has the tile agree with those around it, and extracts its surface | these tiles fitted |
-| ``zeroset-write`` | writes the surface of a tile | these tiles extracted |
-| ``zeroset-finish`` | writes ``tiles.json`` and ``tileset.json`` | all tiles written |
+| ``zeroset-simplify`` | simplifies it, only with `max_error` | these tiles extracted |
+| ``zeroset-write`` | writes the surface of a tile | these tiles extracted, and it simplified |
+| ``zeroset-level`` | makes a square of tiles as one coarser mesh, only for GLB | its four parts |
+| ``zeroset-finish`` | writes ``tiles.json`` and ``tileset.json`` | all of these written |
 
 Tasks hand on through files, in a folder that all workers see under the same name: a disk for workers on one machine, else a shared file
 system. Through Dask go only names and counts. A file appears when it is complete, and a task whose file is there is done. So a task may
@@ -44,6 +46,7 @@ except ImportError as why:
 __all__ = ["Tile", "Tiles", "reconstruct"]
 
 _Id = tuple[int, int]
+_Square = tuple[int, int, int]
 
 
 @dataclass(frozen=True)
@@ -167,8 +170,18 @@ def _sort(job: _Job, number: int) -> None:
             steps.sort(number, own, job.side, job.options)
 
 
-def _plan(job: _Job, after: Sequence[None]) -> list[tuple[_Id, list[_Id]]]:
-    return job.steps().plan(len(job.paths), job.side, job.options)
+@dataclass(frozen=True)
+class _Plan:
+    """What there is to do: tiles, each with those around it, and squares of tiles, each with its parts, level by level."""
+
+    tiles: list[tuple[_Id, list[_Id]]]
+    levels: list[list[tuple[_Square, list[_Square]]]]
+
+
+def _plan(job: _Job, after: Sequence[None]) -> _Plan:
+    steps = job.steps()
+    tiles = steps.plan(len(job.paths), job.side, job.options)
+    return _Plan(tiles, steps.levels() if job.options["tile_format"] == "glb" else [])
 
 
 def _thin(job: _Job, tile: _Id) -> None:
@@ -187,6 +200,16 @@ def _mesh(job: _Job, tile: _Id, after: Sequence[None]) -> None:
     job.steps().mesh(tile)
 
 
+def _simplify(job: _Job, tile: _Id, after: Sequence[None]) -> None:
+    job.steps().simplify(tile)
+
+
+def _level(job: _Job, square: _Square, after: Sequence[None]) -> None:
+    entry = job.steps().level(square)
+    if entry is not None:
+        job.publish(entry["file"])
+
+
 def _write(job: _Job, tile: _Id, after: Sequence[None]) -> dict[str, Any] | None:
     entry = job.steps().write(tile, job.options)
     if entry is not None:
@@ -194,7 +217,7 @@ def _write(job: _Job, tile: _Id, after: Sequence[None]) -> dict[str, Any] | None
     return entry
 
 
-def _finish(job: _Job, entries: Sequence[dict[str, Any] | None]) -> dict[str, Any]:
+def _finish(job: _Job, entries: Sequence[dict[str, Any] | None], after: Sequence[None]) -> dict[str, Any]:
     steps = job.steps()
     steps.finish(json.dumps([entry for entry in entries if entry is not None]), job.options)
     found = _listed(job)
@@ -228,15 +251,26 @@ class _Graph:
         self.futures.append(made)
         return made
 
-    def over_tiles(self, tiles: Sequence[tuple[_Id, Sequence[_Id]]]) -> Any:
+    def over_tiles(self, plan: _Plan) -> Any:
         """Everything once the tiles are known. Returns the last task."""
-        names = {tile: f"{tile[0]}_{tile[1]}" for tile, _ in tiles}
-        around = {tile: [tile, *others] for tile, others in tiles}
+        names = {tile: f"{tile[0]}_{tile[1]}" for tile, _ in plan.tiles}
+        around = {tile: [tile, *others] for tile, others in plan.tiles}
         coarse = self.task(_coarse, "", [self.task(_thin, name, tile) for tile, name in names.items()])
         fits = {tile: self.task(_fit, name, tile, coarse) for tile, name in names.items()}
         meshes = {tile: self.task(_mesh, name, tile, [fits[t] for t in around[tile]]) for tile, name in names.items()}
-        written = [self.task(_write, name, tile, [meshes[t] for t in around[tile]]) for tile, name in names.items()]
-        return self.task(_finish, "", written)
+        ready = {tile: [meshes[t] for t in around[tile]] for tile in names}
+        if self.job.options["max_error"] is not None:
+            ready = {tile: [self.task(_simplify, name, tile, ready[tile])] for tile, name in names.items()}
+        written = [self.task(_write, name, tile, ready[tile]) for tile, name in names.items()]
+        squares: dict[_Square, list[Any]] = {(0, *tile): after for tile, after in ready.items()}
+        made: list[Any] = []
+        for square, parts in (node for nodes in plan.levels for node in nodes):
+            name = "_".join(map(str, square))
+            # Futures are collected once, however many parts wait for the same.
+            after = list({future.key: future for part in parts for future in squares[part]}.values())
+            made.append(self.task(_level, name, square, after))
+            squares[square] = [made[-1]]
+        return self.task(_finish, "", written, made)
 
 
 def _client(client: Any) -> Any:
@@ -269,6 +303,7 @@ def reconstruct(
     exclude: Sequence[int] | None = None,
     bounds: Sequence[Sequence[float]] | None = None,
     attributes: Literal["off", "rgb", "intensity", "class"] = "rgb",
+    max_error: float | None = None,
     tile_format: Literal["glb", "ply"] = "glb",
     scratch: Path | None = None,
     storage_options: Mapping[str, Any] | None = None,
@@ -316,8 +351,10 @@ def reconstruct(
         Uses only points in this box of world coordinates.
     attributes : {"rgb", "off", "intensity", "class"}
         Which values the vertices get from the nearest points.
+    max_error : float, optional
+        Simplifies each tile as far as it moves by no more than this, in the unit of the points.
     tile_format : {"glb", "ply"}
-        How tiles are written: GLB with a ``tileset.json`` for 3D Tiles, or PLY in world coordinates.
+        How tiles are written: GLB with levels of detail and a ``tileset.json`` for 3D Tiles, or PLY in world coordinates.
     scratch : path, optional
         A new folder that all workers see, for the files between tasks. Only for an `output` that is a URL.
     storage_options : dict, optional
@@ -377,6 +414,8 @@ def reconstruct(
         "exclude": None if exclude is None else [int(c) for c in exclude],
         "bounds": None if bounds is None else [[float(v) for v in corner] for corner in bounds],
         "attributes": attributes,
+        "triangles": None,
+        "max_error": max_error,
         "tile_format": tile_format,
         "memory": None,
     }
@@ -386,8 +425,8 @@ def reconstruct(
     try:
         listed = graph.task(_open, "").result()
         if listed is None:
-            tiles = graph.task(_plan, "", [graph.task(_sort, str(i), i) for i in range(len(located))]).result()
-            listed = graph.over_tiles(tiles).result()
+            plan = graph.task(_plan, "", [graph.task(_sort, str(i), i) for i in range(len(located))]).result()
+            listed = graph.over_tiles(plan).result()
         if not keep_work:
             graph.task(_clean, "").result()
     finally:

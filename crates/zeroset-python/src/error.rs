@@ -94,6 +94,7 @@ impl From<ReconstructError> for Failure {
             | ReconstructError::Simplify(_)
             | ReconstructError::TilesOfBody
             | ReconstructError::TilesWithoutTrim
+            | ReconstructError::TilesToTriangles
             | ReconstructError::NarrowTiles { .. } => "ParameterError",
             ReconstructError::NoSurface => "NoSurfaceError",
             ReconstructError::Fit(_) => "FitError",

@@ -9,7 +9,7 @@ use pyo3::types::PyDict;
 use zeroset::cloud::{Filter, NOISE_CLASSES};
 use zeroset::monitor::Monitor;
 use zeroset::reconstruct::ReconstructParams;
-use zeroset::tile::{TileId, TilePlan};
+use zeroset::tile::{Node, NodeId, TileId, TilePlan};
 use zeroset_tiles::{Folder, Sorted, TileEntry, TileFormat, TilesError};
 
 use crate::arrays::dictionary;
@@ -108,7 +108,8 @@ impl TileFolder {
         options: &Bound<'_, PyDict>,
     ) -> PyResult<Vec<(Tile, Vec<Tile>)>> {
         let options = Options(options);
-        let params = ReconstructParams { attributes: options.attributes()?, ..options.fit()? };
+        let params =
+            ReconstructParams { simplify: options.simplify()?, attributes: options.attributes()?, ..options.fit()? };
         let plan = self.run(py, |folder, _| {
             let sorted = match folder.sorted()? {
                 Some(sorted) => sorted,
@@ -149,7 +150,34 @@ impl TileFolder {
         self.planned(py, |folder, sorted, plan, monitor| folder.mesh_tile(sorted, plan, id(tile), monitor))
     }
 
-    /// Writes the surface of a tile, if it has one. It and those around it must be extracted.
+    /// Simplifies the surface of a tile, if that is asked for. It and those around it must be extracted.
+    #[pyo3(signature = (tile: "tuple[int, int]") -> "None")]
+    fn simplify(&self, py: Python<'_>, tile: Tile) -> PyResult<()> {
+        self.planned(py, |folder, _, plan, monitor| folder.simplify_tile(plan, id(tile), monitor))
+    }
+
+    /// The squares of tiles that are shown as one, level by level: each with its parts.
+    #[pyo3(signature = () -> "list[list[tuple[tuple[int, int, int], list[tuple[int, int, int]]]]]")]
+    fn levels(&self, py: Python<'_>) -> PyResult<Vec<Vec<(Square, Vec<Square>)>>> {
+        let levels = self.planned(py, |_, _, plan, _| Ok(plan.levels()))?;
+        let plain = |id: NodeId| (id.level, id.x, id.y);
+        let node = |node: Node| (plain(node.id), node.children.into_iter().map(plain).collect());
+        Ok(levels.into_iter().map(|nodes| nodes.into_iter().map(node).collect()).collect())
+    }
+
+    /// Makes and writes a square of tiles, if it has a surface. Its parts must be there: on the first level tiles, and those around them.
+    #[pyo3(signature = (square: "tuple[int, int, int]") -> "dict[str, Any] | None")]
+    fn level<'py>(&self, py: Python<'py>, square: Square) -> PyResult<Option<Bound<'py, PyDict>>> {
+        let (level, x, y) = square;
+        let wanted = NodeId { level, x, y };
+        let entry = self.planned(py, |folder, sorted, plan, _| {
+            let node = plan.levels().into_iter().flatten().find(|node| node.id == wanted);
+            node.map_or(Ok(None), |node| folder.make_level(sorted, plan, &node))
+        })?;
+        entry.map(|entry| dictionary(py, &entry)).transpose()
+    }
+
+    /// Writes the surface of a tile, if it has one. It and those around it must be extracted, and it simplified if that is asked for.
     #[pyo3(signature = (tile: "tuple[int, int]", options: "dict[str, Any]") -> "dict[str, Any] | None")]
     fn write<'py>(
         &self,
@@ -162,7 +190,7 @@ impl TileFolder {
         entry.map(|entry| dictionary(py, &entry)).transpose()
     }
 
-    /// Writes the lists of the tiles that `write` wrote, which are given as JSON.
+    /// Writes the lists of the tiles that `write` wrote, which are given as JSON. All squares must be there.
     #[pyo3(signature = (entries: "str", options: "dict[str, Any]") -> "None")]
     fn finish(&self, py: Python<'_>, entries: &str, options: &Bound<'_, PyDict>) -> PyResult<()> {
         let format = format(options)?;
@@ -186,6 +214,9 @@ impl TileFolder {
 
 /// Column and row of a tile.
 type Tile = (i32, i32);
+
+/// Level, column and row of a square of tiles.
+type Square = (u32, i32, i32);
 
 fn id((x, y): Tile) -> TileId {
     TileId { x, y }

@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use zeroset::tile::{TileId, TilePlan};
+use zeroset::tile::{NodeId, TileId, TilePlan};
 use zeroset_io::{IoError, write_atomically};
 
 use crate::binary::read;
-use crate::{Sorted, TileEntry, TilesError};
+use crate::{Sorted, TilesError, Written};
 
 /// A folder with what was made so far.
 #[derive(Debug, Clone)]
@@ -76,11 +76,11 @@ impl Folder {
         let _ = std::fs::remove_dir(&self.path);
     }
 
-    /// The tiles that were written, once all is done.
+    /// What was written, once all is done.
     ///
     /// # Errors
     /// If the file cannot be read.
-    pub fn finished(&self) -> Result<Option<Vec<TileEntry>>, TilesError> {
+    pub fn finished(&self) -> Result<Option<Written>, TilesError> {
         let path = self.done_at();
         if path.exists() { read_json(&path).map(Some) } else { Ok(None) }
     }
@@ -132,6 +132,20 @@ impl Folder {
     /// Written last by the extraction of a tile.
     pub(crate) fn pieces(&self, tile: TileId) -> PathBuf {
         self.of_tile("mesh", tile, ".pieces")
+    }
+
+    /// The surface of a tile with fewer triangles.
+    pub(crate) fn simplified(&self, tile: TileId) -> PathBuf {
+        self.of_tile("simplified", tile, ".mesh")
+    }
+
+    pub(crate) fn level_mesh(&self, node: NodeId) -> PathBuf {
+        self.work().join(format!("levels/{node}.mesh"))
+    }
+
+    /// Written last of a square of tiles.
+    pub(crate) fn level_entry(&self, node: NodeId) -> PathBuf {
+        self.work().join(format!("levels/{node}.json"))
     }
 
     pub(crate) fn coarse(&self) -> PathBuf {

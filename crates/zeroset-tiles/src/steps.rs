@@ -196,21 +196,43 @@ impl Folder {
         write_json(&self.pieces(tile), &pieces(&mesh))
     }
 
-    /// The surface of a tile without small pieces. It and its neighbours must be extracted.
+    /// Simplifies the surface of a tile without small pieces, if the plan asks for it. It and its neighbours must be extracted.
+    ///
+    /// # Errors
+    /// If a file cannot be read or written, or the monitor asks to stop.
+    pub fn simplify_tile(&self, plan: &TilePlan, tile: TileId, monitor: &dyn Monitor) -> Result<(), TilesError> {
+        let path = self.simplified(tile);
+        if plan.report.simplify.is_none() || path.exists() {
+            return Ok(());
+        }
+        create(&self.work().join("simplified"))?;
+        write_tile_mesh(&path, &plan.simplify(self.without_small(plan, tile)?, monitor)?)
+    }
+
+    /// The surface of a tile without small pieces, simplified if the plan asks for it. It and its neighbours must be extracted, and it simplified.
     ///
     /// # Errors
     /// If a file cannot be read.
-    pub fn tile_mesh(&self, sorted: &Sorted, plan: &TilePlan, tile: TileId) -> Result<TileMesh, TilesError> {
-        let mut mesh = read_tile_mesh(&self.mesh(tile))?;
-        if let Some(least) = plan.report.min_component {
-            let mut around: Vec<Vec<Piece>> = Vec::new();
-            for other in plan.neighbors(tile) {
-                around.push(read_json(&self.pieces(other))?);
-            }
-            drop_small(&mut mesh, &around, least as u64);
-        }
+    pub fn surface(&self, sorted: &Sorted, plan: &TilePlan, tile: TileId) -> Result<TileMesh, TilesError> {
+        let mut mesh = match plan.report.simplify {
+            Some(_) => read_tile_mesh(&self.simplified(tile))?,
+            None => self.without_small(plan, tile)?,
+        };
         mesh.mesh.crs.clone_from(&sorted.crs);
         Ok(mesh)
+    }
+
+    fn without_small(&self, plan: &TilePlan, tile: TileId) -> Result<TileMesh, TilesError> {
+        let mut mesh = read_tile_mesh(&self.mesh(tile))?;
+        if let Some(least) = plan.report.min_component {
+            drop_small(&mut mesh, &self.pieces_around(plan, tile)?, least as u64);
+        }
+        Ok(mesh)
+    }
+
+    /// The pieces of each of the tiles around one.
+    pub(crate) fn pieces_around(&self, plan: &TilePlan, tile: TileId) -> Result<Vec<Vec<Piece>>, TilesError> {
+        plan.neighbors(tile).map(|other| read_json(&self.pieces(other))).collect()
     }
 
     /// All tiles as one mesh.
@@ -218,14 +240,17 @@ impl Folder {
     /// # Errors
     /// If a file cannot be read, or there is no surface.
     pub fn merged(&self, sorted: &Sorted, plan: &TilePlan) -> Result<Mesh, TilesError> {
+        let is_simple = plan.report.simplify.is_some();
+        let path = |tile| if is_simple { self.simplified(tile) } else { self.mesh(tile) };
         let mut tiles = Vec::new();
         for &tile in &plan.tiles {
-            tiles.push(read_tile_mesh(&self.mesh(tile))?);
+            tiles.push(read_tile_mesh(&path(tile))?);
         }
         let mut mesh = merge(tiles);
         mesh.crs.clone_from(&sorted.crs);
         mesh.world_from_local = plan.world_from_local;
-        if let Some(least) = plan.report.min_component {
+        // What was simplified was without them already, and its triangles are large.
+        if let Some(least) = plan.report.min_component.filter(|_| !is_simple) {
             drop_small_components(&mut mesh, least);
         }
         if mesh.triangles.is_empty() { Err(ReconstructError::NoSurface.into()) } else { Ok(mesh) }

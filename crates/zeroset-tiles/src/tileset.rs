@@ -4,17 +4,26 @@
 //! Vertices of all tiles lie on one raster, whose step is a power of two, and so do the middles of tiles. In a GLB positions are single precision relative to the
 //! middle, which they hold exactly, and the middle is the translation of a node. So what two tiles share is equal bit for bit in world coordinates, too.
 //!
+//! Squares of tiles keep to the same raster up to level 2, or 1 where a tile is hardly shorter than a power of two. A wider square has a raster twice as coarse as
+//! the level below: what squares of one level share is still equal bit for bit, and levels differ by half a step at most.
+//!
+//! # Levels
+//! A tree of tiles that replace one another: a square of tiles has the squares of the level below as children, and the first level has tiles. The geometric error of
+//! a square is a bound that adds up over levels, that of a tile is 0.
+//!
 //! # Source
 //! 3D Tiles 1.1, Open Geospatial Consortium 22-025r4. GeoJSON: RFC 7946, but in the reference system of the input.
+
+use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use zeroset::mesh::Mesh;
-use zeroset::tile::{TileId, TilePlan};
+use zeroset::tile::{Node, NodeId, TileId, TilePlan};
 use zeroset_io::{WriteOptions, write_mesh};
 
 use crate::folder::{create, write_json};
-use crate::{Folder, Sorted, TileFormat, TilesError};
+use crate::{Folder, LevelEntry, Sorted, TileFormat, TilesError, Written};
 
 /// A tile that was written.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -30,7 +39,7 @@ pub struct TileEntry {
 }
 
 impl Folder {
-    /// Writes the surface of a tile; `None` if it has none. It and its neighbours must be extracted.
+    /// Writes the surface of a tile; `None` if it has none. It and its neighbours must be extracted, and it simplified if the plan asks for it.
     ///
     /// # Errors
     /// If a file cannot be read or written.
@@ -41,41 +50,59 @@ impl Folder {
         tile: TileId,
         format: TileFormat,
     ) -> Result<Option<TileEntry>, TilesError> {
-        let mesh = self.tile_mesh(sorted, plan, tile)?.mesh;
+        let mesh = self.surface(sorted, plan, tile)?.mesh;
         let file = format!("tiles/{tile}.{}", format.suffix());
+        let written = self.write_surface(plan, &tile.into(), mesh, &file, format)?;
+        Ok(written.map(|(triangles, bounds)| TileEntry { id: tile, file, triangles, bounds }))
+    }
+
+    /// Writes the surface of a square of tiles; its number of triangles and box, or `None` without any.
+    pub(crate) fn write_surface(
+        &self,
+        plan: &TilePlan,
+        node: &Node,
+        mut mesh: Mesh,
+        file: &str,
+        format: TileFormat,
+    ) -> Result<Option<(u64, [[f64; 3]; 2])>, TilesError> {
         if mesh.triangles.is_empty() {
             return Ok(None);
         }
+        plan.put_on_raster(node.id.level, &mut mesh.vertices);
         let bounds = box_of(&mesh);
         let triangles = mesh.triangles.len() as u64;
         let placed = match format {
-            TileFormat::Glb => about_middle(mesh, plan.middle(tile, bounds)),
+            TileFormat::Glb => about_middle(mesh, plan.middle(node, bounds)),
             TileFormat::Ply => Mesh { world_from_local: plan.world_from_local, ..mesh },
         };
         let options = WriteOptions { resolution: Some(plan.report.resolution), ..WriteOptions::default() };
-        create(&self.path().join("tiles"))?;
-        write_mesh(&self.path().join(&file), &placed, &options)?;
-        Ok(Some(TileEntry { id: tile, file, triangles, bounds }))
+        let path = self.path().join(file);
+        path.parent().map_or(Ok(()), create)?;
+        write_mesh(&path, &placed, &options)?;
+        Ok(Some((triangles, bounds)))
     }
 
-    /// Writes what lists the tiles that were written, last of all.
+    /// Writes what lists the tiles that were written, last of all. Levels of detail must be there for GLB.
     ///
     /// # Errors
-    /// If a file cannot be written.
+    /// If a file cannot be read or written.
     pub fn write_lists(
         &self,
         sorted: &Sorted,
         plan: &TilePlan,
         mut entries: Vec<TileEntry>,
         format: TileFormat,
-    ) -> Result<Vec<TileEntry>, TilesError> {
+    ) -> Result<Written, TilesError> {
         entries.sort_by_key(|entry| entry.id);
         write_json(&self.path().join("tiles.json"), &outlines(sorted, plan, &entries))?;
+        let mut levels = Vec::new();
         if format == TileFormat::Glb {
-            write_json(&self.path().join("tileset.json"), &tileset(plan, &entries))?;
+            levels = self.level_entries(plan)?;
+            write_json(&self.path().join("tileset.json"), &tileset(plan, &entries, &levels))?;
         }
-        write_json(&self.done_at(), &entries)?;
-        Ok(entries)
+        let written = Written { tiles: entries, levels };
+        write_json(&self.done_at(), &written)?;
+        Ok(written)
     }
 }
 
@@ -125,42 +152,78 @@ fn outlines(sorted: &Sorted, plan: &TilePlan, entries: &[TileEntry]) -> Value {
     collection
 }
 
-/// The tileset: one tile for each file, in a local frame whose origin is the offset of the plan, with z up.
-fn tileset(plan: &TilePlan, entries: &[TileEntry]) -> Value {
-    let volume = |[low, high]: [[f64; 3]; 2]| {
-        let (middle, half): ([f64; 3], [f64; 3]) = (
-            std::array::from_fn(|a| 0.5 * (low[a] + high[a])),
-            std::array::from_fn(|a| (0.5 * (high[a] - low[a])).max(1e-3 * plan.report.resolution)),
-        );
-        json!({ "box": [
-            middle[0], middle[1], middle[2], half[0], 0.0, 0.0, 0.0, half[1], 0.0, 0.0, 0.0, half[2],
-        ]})
+/// A place in the tree of a tileset.
+struct Branch {
+    /// The box of all that is below, and of what is shown here.
+    bounds: [[f64; 3]; 2],
+    error: f64,
+    value: Value,
+}
+
+impl Branch {
+    /// What shows a file, or nothing, in place of its children.
+    fn new(shown: Option<(&str, [[f64; 3]; 2])>, error: f64, children: Vec<Self>, least: f64) -> Self {
+        let boxes = children.iter().map(|child| child.bounds).chain(shown.map(|(_, bounds)| bounds));
+        let bounds = boxes.fold([[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]], |[low, high], [l, h]| {
+            [std::array::from_fn(|a| low[a].min(l[a])), std::array::from_fn(|a| high[a].max(h[a]))]
+        });
+        // Nothing is nearer to the truth than what it is made of.
+        let error = children.iter().map(|child| child.error).fold(error, f64::max);
+        let mut value = json!({ "boundingVolume": volume(bounds, least), "geometricError": error });
+        if let Some((file, _)) = shown {
+            value["content"] = json!({ "uri": file });
+        }
+        if !children.is_empty() {
+            value["children"] = children.into_iter().map(|child| child.value).collect();
+        }
+        Self { bounds, error, value }
+    }
+}
+
+/// A box with half sides of at least a length, which is also what it is larger than asked for.
+fn volume([low, high]: [[f64; 3]; 2], least: f64) -> Value {
+    let middle: [f64; 3] = std::array::from_fn(|a| 0.5 * (low[a] + high[a]));
+    let half: [f64; 3] = std::array::from_fn(|a| 0.5 * (high[a] - low[a]) + least);
+    json!({ "box": [
+        middle[0], middle[1], middle[2], half[0], 0.0, 0.0, 0.0, half[1], 0.0, 0.0, 0.0, half[2],
+    ]})
+}
+
+/// The tileset: a tree of the files, in a local frame whose origin is the offset of the plan, with z up.
+fn tileset(plan: &TilePlan, tiles: &[TileEntry], levels: &[LevelEntry]) -> Value {
+    let least = 1e-3 * plan.report.resolution;
+    let leaf =
+        |tile: &TileEntry| (tile.id.into(), Branch::new(Some((&tile.file, tile.bounds)), 0.0, Vec::new(), least));
+    let mut branches: BTreeMap<NodeId, Branch> = tiles.iter().map(leaf).collect();
+    let shown: BTreeMap<NodeId, &LevelEntry> = levels.iter().map(|entry| (entry.id, entry)).collect();
+    for node in plan.levels().into_iter().flatten() {
+        let children: Vec<Branch> = node.children.iter().filter_map(|child| branches.remove(child)).collect();
+        if !children.is_empty() {
+            let entry = shown.get(&node.id);
+            let content = entry.map(|entry| (entry.file.as_str(), entry.bounds));
+            let error = entry.map_or(0.0, |entry| entry.error);
+            branches.insert(node.id, Branch::new(content, error, children, least));
+        }
+    }
+    // Without its content nothing is seen of the whole.
+    let size = |[low, high]: [[f64; 3]; 2]| (0..3).map(|a| high[a] - low[a]).fold(0.0, f64::max);
+    let mut roots: Vec<Branch> = branches.into_values().collect();
+    let root = match roots.pop() {
+        Some(only) if roots.is_empty() && !levels.is_empty() => only,
+        last => {
+            roots.extend(last);
+            let error = roots.iter().map(|root| size(root.bounds)).fold(0.0, f64::max);
+            Branch::new(None, error, roots, least)
+        }
     };
-    let whole = entries.iter().fold([[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]], |all, entry| {
-        [
-            std::array::from_fn(|a| all[0][a].min(entry.bounds[0][a])),
-            std::array::from_fn(|a| all[1][a].max(entry.bounds[1][a])),
-        ]
-    });
-    let child = |entry: &TileEntry| {
-        json!({
-            "boundingVolume": volume(entry.bounds),
-            "geometricError": 0.0,
-            "content": { "uri": entry.file },
-        })
-    };
+    let error = size(root.bounds).max(root.error);
     let [x, y, z] = plan.world_from_local;
-    // Without its tiles nothing is seen of the whole.
-    let error = (0..3).map(|a| whole[1][a] - whole[0][a]).fold(0.0, f64::max);
+    let mut value = root.value;
+    value["transform"] = json!([1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, x, y, z, 1.0]);
+    value["refine"] = json!("REPLACE");
     json!({
         "asset": { "version": "1.1", "generator": WriteOptions::default().generator },
         "geometricError": error,
-        "root": {
-            "transform": [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, x, y, z, 1.0],
-            "boundingVolume": volume(whole),
-            "geometricError": error,
-            "refine": "ADD",
-            "children": entries.iter().map(child).collect::<Vec<Value>>(),
-        },
+        "root": value,
     })
 }

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use serde_json::Value;
 use zeroset::cloud::Cloud;
-use zeroset::mesh::{Mesh, topology};
+use zeroset::mesh::{CompareParams, Mesh, compare, topology};
 use zeroset::sample::{Scene, SceneKind};
 use zeroset_io::{WriteOptions, read_mesh, write_cloud};
 
@@ -79,11 +79,15 @@ fn tiles_meet_bit_for_bit_and_their_lists_tell_of_them() {
     let made = files(&folder.path().join("out"));
     let names: Vec<&str> = made.keys().map(String::as_str).collect();
     let tiles = ["tiles/-1_-1.glb", "tiles/-1_0.glb", "tiles/0_-1.glb", "tiles/0_0.glb"];
-    let lists = ["plan.json", "run.json", "sorted.json"];
+    let lists = ["levels/1/-1_-1.glb", "plan.json", "run.json", "sorted.json"];
     assert_eq!(names, [&["done.json"], &lists[..], &["tiles.json"], &tiles[..], &["tileset.json"]].concat());
     let tileset: Value = serde_json::from_slice(&made["tileset.json"]).unwrap();
-    let children = tileset["root"]["children"].as_array().unwrap();
-    assert_eq!((tileset["asset"]["version"].as_str(), children.len()), (Some("1.1"), 4));
+    let root = &tileset["root"];
+    assert_eq!((tileset["asset"]["version"].as_str(), root["refine"].as_str()), (Some("1.1"), Some("REPLACE")));
+    assert_eq!((root["content"]["uri"].as_str(), root["children"].as_array().unwrap().len()), (Some(lists[0]), 4));
+    let count = |name: &str| as_stored(&made[name]).triangles.len();
+    assert!(count(lists[0]) < tiles.iter().map(|name| count(name)).sum::<usize>() / 10);
+    assert!((0.001..0.06).contains(&root["geometricError"].as_f64().unwrap()));
     let outlines: Value = serde_json::from_slice(&made["tiles.json"]).unwrap();
     let points: u64 =
         outlines["features"].as_array().unwrap().iter().map(|f| f["properties"]["points"].as_u64().unwrap()).sum();
@@ -125,6 +129,53 @@ fn tiles_meet_bit_for_bit_and_their_lists_tell_of_them() {
     assert!(one == two && !folder.path().join("one.ply.tiles").exists());
     let found = topology(&read_mesh(&folder.path().join("one.ply")).unwrap()).unwrap();
     assert_eq!((found.nonmanifold_edges, found.duplicate_triangles), (0, 0));
+}
+
+/// Middles of edges with one triangle.
+fn open_edges(mesh: &Mesh) -> Vec<[f64; 3]> {
+    let mut sides: BTreeMap<[u32; 2], usize> = BTreeMap::new();
+    for t in &mesh.triangles {
+        for i in 0..3 {
+            let (a, b) = (t[i], t[(i + 1) % 3]);
+            *sides.entry([a.min(b), a.max(b)]).or_default() += 1;
+        }
+    }
+    let middle = |ends: [u32; 2]| -> [f64; 3] {
+        let [p, q] = ends.map(|v| mesh.vertices[v as usize]);
+        std::array::from_fn(|a| 0.5 * (p[a] + q[a]) + mesh.world_from_local[a])
+    };
+    sides.into_iter().filter(|(_, count)| *count == 1).map(|(ends, _)| middle(ends)).collect()
+}
+
+#[test]
+fn simplified_tiles_keep_the_error_and_meet() {
+    let folder = folder();
+    city(folder.path());
+    let part = format!("{RUN} --bounds=-0.2,-0.15,0.2,0.15");
+    line(folder.path(), &format!("{part} -o full.ply")).ok();
+    line(folder.path(), &format!("{part} -o simple.ply --max-error 0.003")).ok();
+    line(folder.path(), &format!("{part} -o simple/ --max-error 0.003")).ok();
+    let [full, simple] = ["full.ply", "simple.ply"].map(|name| read_mesh(&folder.path().join(name)).unwrap());
+    assert!(simple.triangles.len() < full.triangles.len() / 4, "{}", simple.triangles.len());
+    let made = files(&folder.path().join("simple"));
+    let in_tiles = |(name, glb): (&String, &Vec<u8>)| {
+        if name.starts_with("tiles/") { as_stored(glb).triangles.len() } else { 0 }
+    };
+    assert_eq!(made.iter().map(in_tiles).sum::<usize>(), simple.triangles.len());
+    assert!(made.contains_key("levels/1/-1_-1.glb"));
+    let params = CompareParams { samples: 50_000, ..CompareParams::default() };
+    let apart = compare(&simple, &full, &params, &()).unwrap().overall.distances.combined;
+    // Beside the places that were measured, too.
+    assert!(apart.max < 1.1 * 0.003 && apart.max > 0.0003, "{apart:?}");
+    let found = topology(&simple).unwrap();
+    assert_eq!((found.nonmanifold_edges, found.inconsistent_edges), (0, 0));
+    // Along the faces there are no open edges but where the whole has some.
+    let (all, open) = (open_edges(&full), open_edges(&simple));
+    assert!(!all.is_empty());
+    for p in open.iter().filter(|p| p[0].abs() < 0.016 || p[1].abs() < 0.016) {
+        let near = |q: &[f64; 3]| (0..3).map(|a| (p[a] - q[a]).powi(2)).sum::<f64>().sqrt() < 0.03;
+        assert!(all.iter().any(near), "{p:?}");
+    }
 }
 
 #[test]
@@ -180,6 +231,7 @@ fn folders_and_options_that_do_not_fit_are_refused_in_one_line() {
     refused("-o other/ --tile 1.1 --resolution 0.008 --scene object", &["a.xyz", "--scene terrain"]);
     refused("-o feet/ --tile 1.1ft --resolution 0.008", &["a.xyz", "unit", "--tile"]);
     refused("-o some/ --tile 1.1 --outliers 8", &["--outliers"]);
+    refused("-o some/ --tile 1.1 --triangles 800", &["--triangles", "--max-error"]);
     refused("-o none/ --tile 1.1 --bounds 7,7,8,8", &["a.xyz", "no points"]);
     line(
         folder.path(),

@@ -1,10 +1,12 @@
 //! Triangle meshes, and what can be measured on them.
 
+mod cluster;
 mod compare;
 mod components;
 mod creases;
 mod edges;
 mod intersections;
+mod quadric;
 mod section;
 mod simplify;
 mod topology;
@@ -12,6 +14,7 @@ mod topology;
 #[cfg(test)]
 mod tests;
 
+pub use cluster::{Clustered, cluster};
 pub use compare::{Agreement, CompareError, CompareParams, CompareReport, Distances, OneWay, Role, compare};
 pub use components::{DroppedComponents, drop_small_components};
 pub(crate) use creases::{Crease, crease_edges};
@@ -20,7 +23,7 @@ pub(crate) use edges::Edges;
 pub(crate) use intersections::{Facet, Projection, pairs_of as overlapping_pairs, projections};
 pub use intersections::{SelfIntersectionError, SelfIntersections, self_intersections};
 pub use section::{PlaneCurve, section};
-pub use simplify::{Deviation, SimplifyError, SimplifyParams, SimplifyReport, simplify};
+pub use simplify::{Deviation, SimplifyError, SimplifyParams, SimplifyReport, simplify, simplify_held};
 pub use topology::{Component, Topology, topology};
 
 use crate::cloud::Attributes;

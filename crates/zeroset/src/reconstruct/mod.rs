@@ -97,6 +97,9 @@ pub enum ReconstructError {
     /// Tiles of a surface without an end.
     #[error("tiles end where the points do, so --trim off is not possible; give a length, or no --tile")]
     TilesWithoutTrim,
+    /// A number of triangles for tiles.
+    #[error("how many triangles each tile should have is not known; give --max-error, or no --tile")]
+    TilesToTriangles,
     /// Tiles narrower than their halos.
     #[error("tiles of {side} are narrow for this resolution; give --tile {least:.1} or more, or a finer --resolution")]
     NarrowTiles {

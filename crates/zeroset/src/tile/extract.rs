@@ -4,7 +4,7 @@ use super::layout::Layout;
 use super::{Strip, TileFit, TileId, TilePlan};
 use crate::cloud::Cloud;
 use crate::contour::ColumnOutline;
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, SimplifyError, simplify_held};
 use crate::model::{MeshReport, Piece, SAMPLES_REL, piece};
 use crate::monitor::Monitor;
 use crate::reconstruct::ReconstructError;
@@ -46,6 +46,23 @@ impl TilePlan {
         let mut shared: Vec<(u32, [u64; 3])> = seam.keys.into_iter().collect();
         shared.sort_unstable();
         Ok((TileMesh { mesh, shared }, report))
+    }
+
+    /// The surface of a tile with fewer triangles, if the plan asks for it. What neighbours share stays, so they still fit together. Small pieces must be dropped
+    /// before.
+    ///
+    /// # Errors
+    /// If the monitor asks to stop.
+    pub fn simplify(&self, tile: TileMesh, monitor: &dyn Monitor) -> Result<TileMesh, ReconstructError> {
+        let Some(params) = &self.report.simplify else { return Ok(tile) };
+        let held: Vec<u32> = tile.shared.iter().map(|(v, _)| *v).collect();
+        let (mesh, numbers, _) = match simplify_held(&tile.mesh, &held, params, monitor) {
+            Err(SimplifyError::NoSurface { .. }) => return Ok(tile),
+            simplified => simplified?,
+        };
+        let named = tile.shared.iter().zip(numbers);
+        let shared = named.filter_map(|((_, key), number)| Some((number?, *key))).collect();
+        Ok(TileMesh { mesh, shared })
     }
 
     /// The outline of the data around a tile, closed by a radius, as it is for the whole.

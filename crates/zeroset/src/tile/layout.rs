@@ -142,14 +142,9 @@ impl Layout {
         (first[1]..=last[1]).flat_map(move |y| (first[0]..=last[0]).map(move |x| TileId { x, y }))
     }
 
-    /// The raster that vertices of all tiles lie on.
+    /// The raster that vertices of all tiles lie on: relative to the middle of a tile single precision holds positions as far off as the tile is wide, and
+    /// half as far again.
     pub(super) fn raster(&self) -> Raster {
-        raster(self.side)
+        Raster::up_to(self.side)
     }
-}
-
-/// The raster of tiles of a side: relative to the middle of a tile single precision holds positions as far off as the tile is wide, and half as
-/// far again.
-pub(super) fn raster(side: f64) -> Raster {
-    Raster::up_to(side)
 }

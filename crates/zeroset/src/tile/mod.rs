@@ -20,14 +20,16 @@
 //! - [`TilePlan::fit`]: F on the finest level of a tile with its halo, and its planes.
 //! - [`Strip`]: F beside the faces of a tile, for its neighbours.
 //! - [`TilePlan::mesh`]: F made the same as the neighbours', and its zero set, sharp, with the vertices that are shared.
+//! - [`TilePlan::simplify`]: fewer triangles, where that is asked for.
 //! - [`merge`]: tiles as one mesh.
+//! - [`TilePlan::part`] and [`TilePlan::level`]: a tile, and up to four parts together, as a coarser mesh for a view from afar.
 //! - [`TileMemory`]: how wide tiles may be.
 //!
 //! Where the steps run, and where their results are kept meanwhile, is the caller's: [`reconstruct`] does all in memory and shows how
 //! they fit together.
 //!
 //! # Guaranteed
-//! The vertices that neighbouring tiles share are equal bit for bit, and merged tiles are a manifold. The result does not depend on where, when or in
+//! The vertices that neighbouring tiles share are equal bit for bit, simplified or not and on all levels, and merged tiles are a manifold. The result does not depend on where, when or in
 //! which order steps ran.
 //!
 //! # Not guaranteed
@@ -42,6 +44,7 @@ mod extract;
 mod fit;
 mod gather;
 mod layout;
+mod level;
 mod memory;
 mod merge;
 mod plan;
@@ -54,6 +57,7 @@ mod tests;
 pub use agree::Strip;
 pub use extract::TileMesh;
 pub use fit::{TileFit, TileFitReport};
+pub use level::{LevelMesh, Node, NodeId, Shared};
 pub use memory::TileMemory;
 pub use merge::merge;
 pub use plan::{Measurement, TileId, TilePlan};

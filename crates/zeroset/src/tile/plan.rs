@@ -98,7 +98,8 @@ impl TilePlan {
     /// Resolves every default.
     ///
     /// # Errors
-    /// If the points bear no surface, the scene is neither terrain nor airborne, tiles are narrower than 128 cells, or nothing is trimmed.
+    /// If the points bear no surface, the scene is neither terrain nor airborne, tiles are narrower than 128 cells, nothing is trimmed, or a number of triangles is asked
+    /// for.
     pub fn new(measured: Measurement<'_>, side: f64, params: &ReconstructParams) -> Result<Self, ReconstructError> {
         params.check()?;
         if !(side.is_finite() && side > 0.0) {
@@ -112,6 +113,9 @@ impl TilePlan {
         }
         if params.trim == Trim::Off {
             return Err(ReconstructError::TilesWithoutTrim);
+        }
+        if params.simplify.as_ref().is_some_and(|simplify| simplify.triangles.is_some()) {
+            return Err(ReconstructError::TilesToTriangles);
         }
         let resolution = whole.wanted(params)?;
         if side < LEAST_NODES * resolution {
@@ -143,19 +147,6 @@ impl TilePlan {
     pub fn outline(&self, tile: TileId) -> [[f64; 2]; 2] {
         let corner = |step: i32| [tile.x, tile.y].map(|c| (f64::from(c) + f64::from(step)) * self.side);
         [corner(0), corner(1)]
-    }
-
-    /// The place that positions of a tile's surface are told from, in local coordinates: about the middle of its box, and on the raster of all
-    /// vertices.
-    #[must_use]
-    pub fn middle(&self, tile: TileId, [low, high]: [[f64; 3]; 2]) -> [f64; 3] {
-        let up = self.report.up;
-        let [first, last] = self.outline(tile);
-        let offset = up.upright(self.world_from_local);
-        let (low, high) = (up.upright(low), up.upright(high));
-        let of_tile = [0, 1].map(|a| 0.5 * (first[a] + last[a]) - offset[a]);
-        let middle = up.restore([of_tile[0], of_tile[1], 0.5 * (low[2] + high[2])]);
-        super::layout::raster(self.side).nearest(middle)
     }
 
     /// The tiles around one that hold points, in order.

@@ -2,7 +2,7 @@
 
 use super::{Measurement, Strip, TileFit, TileId, TileMesh, TilePlan, merge};
 use crate::cloud::Cloud;
-use crate::mesh::{Mesh, drop_small_components};
+use crate::mesh::{Mesh, drop_small_components, simplify};
 use crate::monitor::{Monitor, Part};
 use crate::reconstruct::{ReconstructError, ReconstructParams};
 use std::collections::BTreeMap;
@@ -65,6 +65,10 @@ pub fn reconstruct(
     mesh.crs.clone_from(&cloud.crs);
     if let Some(least) = plan.report.min_component {
         drop_small_components(&mut mesh, least);
+    }
+    // Here the whole is at hand.
+    if let Some(params) = &plan.report.simplify {
+        mesh = simplify(&mesh, params, &())?.0;
     }
     if mesh.triangles.is_empty() {
         return Err(ReconstructError::NoSurface);

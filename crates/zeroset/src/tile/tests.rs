@@ -88,3 +88,33 @@ fn tiles_lie_on_whole_multiples_of_their_side() {
     tiles.sort();
     assert_eq!(tiles[0].y, 0);
 }
+
+#[test]
+fn levels_end_with_one_square_that_has_all() {
+    let draft = ReconstructParams { quality: Quality::Draft, ..params() };
+    let (cloud, tiles) = (city(), vec![TileId { x: 0, y: 0 }]);
+    let bounds = crate::domain::bounds(cloud.points.iter().copied()).into();
+    let measured = Measurement { points: cloud.len(), bounds, sample: &cloud, tiles };
+    let mut plan = TilePlan::new(measured, 1.1, &draft).unwrap();
+    assert!(plan.levels().is_empty());
+    let mut named = |tiles: &[(i32, i32)]| -> Vec<Vec<String>> {
+        plan.tiles = tiles.iter().map(|&(x, y)| TileId { x, y }).collect();
+        let name = |node: Node| {
+            let children: Vec<String> = node.children.iter().map(NodeId::to_string).collect();
+            format!("{} of {}", node.id, children.join(" "))
+        };
+        plan.levels().into_iter().map(|nodes| nodes.into_iter().map(name).collect()).collect()
+    };
+    // Around the origin, where halves never meet.
+    assert_eq!(named(&[(-1, -1), (0, -1), (-1, 0), (0, 0)]), [["1/-1_-1 of 0/-1_-1 0/0_-1 0/-1_0 0/0_0"]]);
+    // A row, in which a square has a single part.
+    let row = named(&[(3, 5), (4, 5), (5, 5), (6, 5), (7, 5)]);
+    assert_eq!(row[0], ["1/1_2 of 0/3_5", "1/2_2 of 0/4_5 0/5_5", "1/3_2 of 0/6_5 0/7_5"]);
+    assert_eq!(row[1], ["2/0_1 of 1/1_2", "2/1_1 of 1/2_2 1/3_2"]);
+    assert_eq!(row[2..], [["3/0_0 of 2/0_1 2/1_1"]]);
+    // Middles lie in the middle of the square, whatever it is made of.
+    let root = plan.levels().remove(2).remove(0);
+    let middle = plan.middle(&root, [[0.0; 3]; 2]);
+    let offset = plan.world_from_local;
+    assert!((middle[0] + offset[0] - 4.0 * 1.1).abs() < 1e-5, "{middle:?}");
+}

@@ -12,9 +12,7 @@ use zeroset::monitor::Monitor;
 use zeroset::reconstruct::{Plan, ReconstructError, ReconstructParams};
 use zeroset::tile::TilePlan;
 use zeroset_io::{MeshFormat, WriteOptions, shown, write_mesh};
-use zeroset_tiles::{
-    Crew, Folder, RunParams, Sorted, TileEntry, TileFormat, TileSeconds, TilesError, run, write_tiles,
-};
+use zeroset_tiles::{Crew, Folder, RunParams, Sorted, TileFormat, TileSeconds, TilesError, Written, run, write_tiles};
 
 use super::failed;
 use crate::args::{OrOff, ReconstructArgs, TileFormatChoice};
@@ -54,7 +52,8 @@ fn described(args: &ReconstructArgs) -> serde_json::Value {
         "zeroset_version": env!("CARGO_PKG_VERSION"),
         "inputs": files(&args.input.inputs),
         "constraints": files(&args.fit.constraints),
-        "options": format!("{:?}", (&args.input, &args.fit, args.attributes, args.tiles.tile, format(args).suffix())),
+        "options": format!("{:?}", (&args.input, &args.fit, args.attributes, args.tiles.tile, args.simplify.max_error)),
+        "format": format(args).suffix(),
     })
 }
 
@@ -62,7 +61,8 @@ fn described(args: &ReconstructArgs) -> serde_json::Value {
 struct TilesReport<'a> {
     plan: &'a TilePlan,
     points: u64,
-    tiles: &'a [TileEntry],
+    #[serde(flatten)]
+    written: &'a Written,
     triangles: u64,
     jobs: usize,
     seconds: TileSeconds,
@@ -141,21 +141,20 @@ fn make(
         None => size::jobs(args, params, (plan.side, size::memory(&sorted, &plan, params)), threads)?,
     };
     let was_finished = finished.is_some();
-    let made = match finished {
-        Some(entries) => (TileSeconds::default(), entries),
+    let (seconds, written) = match finished {
+        Some(written) => (TileSeconds::default(), written),
         None => with_progress(console, |progress| {
             let run_params = RunParams { reconstruct: params.clone(), jobs, threads };
             surfaces(args, folder, (&sorted, &plan), &run_params, output, progress)
         })??,
     };
-    let (seconds, entries) = made;
     let is_merged = !is_folder(output);
     if is_merged {
         folder.remove()?;
     } else if !args.tiles.keep_work {
         folder.remove_work()?;
     }
-    let triangles = entries.iter().map(|entry| entry.triangles).sum();
+    let triangles = written.tiles.iter().map(|entry| entry.triangles).sum();
     let total_seconds = start.elapsed().as_secs_f64();
     let what = format!(
         "{}{} tiles of {} from {} points (resolution {})",
@@ -176,7 +175,7 @@ fn make(
         TilesReport {
             plan: &plan,
             points: sorted.points,
-            tiles: &entries,
+            written: &written,
             triangles,
             jobs,
             seconds,
@@ -229,21 +228,20 @@ fn surfaces(
     params: &RunParams,
     output: &Path,
     progress: &dyn Monitor,
-) -> Result<(TileSeconds, Vec<TileEntry>), CliError> {
+) -> Result<(TileSeconds, Written), CliError> {
     let mut seconds = run(folder, sorted, plan, params, progress)?;
-    let begun = Instant::now();
-    let entries = if is_folder(output) {
+    if is_folder(output) {
         let crew = Crew { jobs: params.jobs, threads: params.threads, monitor: progress };
-        write_tiles(folder, sorted, plan, format(args), &crew)?
-    } else {
-        progress.stage(&format!("writing {}", shown(output)));
-        let mesh = folder.merged(sorted, plan)?;
-        let options = WriteOptions { resolution: Some(plan.report.resolution), ..WriteOptions::default() };
-        write_mesh(output, &mesh, &options)?;
-        Vec::new()
-    };
+        let written = write_tiles(folder, sorted, plan, format(args), &crew, &mut seconds)?;
+        return Ok((seconds, written));
+    }
+    let begun = Instant::now();
+    progress.stage(&format!("writing {}", shown(output)));
+    let mesh = folder.merged(sorted, plan)?;
+    let options = WriteOptions { resolution: Some(plan.report.resolution), ..WriteOptions::default() };
+    write_mesh(output, &mesh, &options)?;
     seconds.write = begun.elapsed().as_secs_f64();
-    Ok((seconds, entries))
+    Ok((seconds, Written::default()))
 }
 
 fn format(args: &ReconstructArgs) -> TileFormat {
@@ -259,8 +257,8 @@ fn refuse(args: &ReconstructArgs) -> Result<(), CliError> {
     if matches!(args.input.outliers, OrOff::Value(_)) {
         return refused("--outliers", "leave it out, or use --exclude");
     }
-    if args.simplify.params().is_some() {
-        return refused("--triangles or --max-error", "use zeroset simplify on the tiles");
+    if args.simplify.triangles.is_some() {
+        return refused("--triangles", "give --max-error, or use zeroset simplify on one mesh of all tiles");
     }
     if args.input.inputs.iter().any(|path| is_stream(path)) {
         return refused("standard input", "give files");

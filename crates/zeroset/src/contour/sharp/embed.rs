@@ -39,6 +39,11 @@ impl Raster {
         Self { step: if largest > 0.0 { 2.0_f64.powi(largest.log2().floor() as i32 - 22) } else { 1.0 } }
     }
 
+    /// How far apart its places are along each axis.
+    pub(crate) fn step(self) -> f64 {
+        self.step
+    }
+
     /// The place nearest to a position.
     pub(crate) fn nearest(self, v: Vec3) -> Vec3 {
         v.map(|c| (c / self.step).round_ties_even() * self.step)

@@ -2,9 +2,9 @@
 
 use rayon::prelude::*;
 
-use super::quadric::Quadric;
 use crate::mesh::Mesh;
 use crate::mesh::edges::Edges;
+use crate::mesh::quadric::Quadric;
 use crate::vec3::{self, Vec3};
 
 /// Rounds in which the normals are smoothed before creases are looked for.

@@ -47,6 +47,10 @@
 //! - Vertices that no triangle uses, and triangles that repeat a vertex, are dropped.
 //! - A mesh whose triangles share no vertices has nothing to collapse.
 //!
+//! # Held vertices
+//! [`simplify_held`] keeps some vertices where they are, bit for bit, with their values and the edges between them: meshes that share these go on sharing them.
+//! Edges that end at one are not collapsed.
+//!
 //! # Attributes
 //! Each vertex of the result gets the values of the place on the original that is nearest to it: colours and intensities
 //! interpolated in the triangle there, the class of its weightiest corner.
@@ -72,7 +76,6 @@ mod collapse;
 mod cover;
 mod deviation;
 mod features;
-mod quadric;
 mod surface;
 
 use std::time::Instant;
@@ -173,12 +176,27 @@ pub fn simplify(
     params: &SimplifyParams,
     monitor: &dyn Monitor,
 ) -> Result<(Mesh, SimplifyReport), SimplifyError> {
+    simplify_held(mesh, &[], params, monitor).map(|(mesh, _, report)| (mesh, report))
+}
+
+/// Simplifies a mesh around vertices that stay, and tells their numbers in the result, in the order in which they were given; `None` for those without a triangle.
+///
+/// # Errors
+/// As for [`simplify`].
+pub fn simplify_held(
+    mesh: &Mesh,
+    held: &[u32],
+    params: &SimplifyParams,
+    monitor: &dyn Monitor,
+) -> Result<(Mesh, Vec<Option<u32>>, SimplifyReport), SimplifyError> {
     let start = Instant::now();
     params.check()?;
     monitor.stage("simplifying the mesh");
-    let original = Original { mesh, edges: Edges::new(mesh)?, tree: TriangleTree::new(mesh) };
-    let Simplified { mut mesh, deviation, attempts } = original.simplified(params, monitor)?;
+    let original = Original { mesh, held, edges: Edges::new(mesh)?, tree: TriangleTree::new(mesh) };
+    let Simplified { mut mesh, number, deviation, attempts } = original.simplified(params, monitor)?;
     mesh.attributes = deviation::carried(original.mesh, &original.tree, &mesh.vertices);
+    let held: Vec<Option<u32>> = held.iter().map(|&v| *number.get(v as usize)?).collect();
+    original.keep_values(&held, &mut mesh);
     mesh.world_from_local = original.mesh.world_from_local;
     mesh.crs.clone_from(&original.mesh.crs);
     monitor.share(1.0);
@@ -193,7 +211,7 @@ pub fn simplify(
         attempts,
         seconds: start.elapsed().as_secs_f64(),
     };
-    Ok((mesh, report))
+    Ok((mesh, held, report))
 }
 
 impl SimplifyParams {
@@ -216,6 +234,7 @@ impl SimplifyParams {
 /// A mesh with what finds its edges and places.
 struct Original<'a> {
     mesh: &'a Mesh,
+    held: &'a [u32],
     edges: Edges<'a>,
     tree: TriangleTree,
 }
@@ -223,6 +242,8 @@ struct Original<'a> {
 /// What came of it.
 struct Simplified {
     mesh: Mesh,
+    /// The number of each vertex of the original that is left.
+    number: Vec<Option<u32>>,
     deviation: Deviation,
     attempts: u32,
 }
@@ -230,7 +251,7 @@ struct Simplified {
 impl Original<'_> {
     /// Tries until the measured error keeps the bound.
     fn simplified(&self, params: &SimplifyParams, monitor: &dyn Monitor) -> Result<Simplified, SimplifyError> {
-        let surface = Surface::new(self.mesh, &self.edges);
+        let surface = Surface::new(self.mesh, &self.edges, self.held);
         let mut tolerance = Tolerance::new(&surface, params.triangles, params.max_error);
         for attempt in 1..=MOST_ATTEMPTS {
             // The first gets most of the whole, and each of the others most of what is left.
@@ -240,17 +261,33 @@ impl Original<'_> {
             let features = Features::new(self.mesh, &self.edges, params.sharp_angle);
             let collapser = Collapser::new(surface.clone(), features, cover);
             let collapsed = collapser.run(params.triangles.unwrap_or(0), &Part::new(&part, 0.0..COLLAPSED))?;
-            let mesh = collapsed.to_mesh();
+            let (mesh, number) = collapsed.to_mesh();
             let deviation = self.deviation(&mesh, &Part::new(&part, COLLAPSED..1.0))?;
             match params.max_error {
                 Some(max) if deviation.max() > max => tolerance.tighten(max, deviation.max()),
-                _ => return Ok(Simplified { mesh, deviation, attempts: attempt }),
+                _ => return Ok(Simplified { mesh, number, deviation, attempts: attempt }),
             }
         }
         let Mesh { vertices, triangles, .. } = self.mesh;
         let mesh = Mesh { vertices: vertices.clone(), triangles: triangles.clone(), ..Mesh::default() };
         let deviation = self.deviation(&mesh, &())?;
-        Ok(Simplified { mesh, deviation, attempts: MOST_ATTEMPTS })
+        let number = (0..mesh.vertices.len() as u32).map(Some).collect();
+        Ok(Simplified { mesh, number, deviation, attempts: MOST_ATTEMPTS })
+    }
+
+    /// Gives the held vertices the values they had: those found at their place may differ by a rounding.
+    fn keep_values(&self, held: &[Option<u32>], mesh: &mut Mesh) {
+        fn keep<T: Copy>(from: Option<&Vec<T>>, to: Option<&mut Vec<T>>, (old, new): (u32, u32)) {
+            if let (Some(from), Some(to)) = (from, to) {
+                to[new as usize] = from[old as usize];
+            }
+        }
+        let (from, to) = (&self.mesh.attributes, &mut mesh.attributes);
+        for pair in self.held.iter().zip(held).filter_map(|(&old, new)| Some((old, (*new)?))) {
+            keep(from.colors.as_ref(), to.colors.as_mut(), pair);
+            keep(from.intensities.as_ref(), to.intensities.as_mut(), pair);
+            keep(from.classes.as_ref(), to.classes.as_mut(), pair);
+        }
     }
 
     fn deviation(&self, simplified: &Mesh, monitor: &dyn Monitor) -> Result<Deviation, SimplifyError> {

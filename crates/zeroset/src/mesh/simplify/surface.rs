@@ -13,7 +13,7 @@ pub(super) struct Surface {
     stars: Vec<Vec<u32>>,
     alive: Vec<bool>,
     live: usize,
-    /// Vertices that must stay as they are: the surface is no manifold there.
+    /// Vertices that must stay as they are: they are held, or the surface is no manifold there.
     fixed: Vec<bool>,
 }
 
@@ -29,8 +29,8 @@ pub(super) struct Change {
 }
 
 impl Surface {
-    /// The surface of a sound mesh, given its edges. Triangles that repeat a vertex are left out.
-    pub(super) fn new(mesh: &Mesh, edges: &Edges) -> Self {
+    /// The surface of a sound mesh, given its edges and the vertices that stay as they are. Triangles that repeat a vertex are left out.
+    pub(super) fn new(mesh: &Mesh, edges: &Edges, held: &[u32]) -> Self {
         let mut stars = vec![Vec::new(); mesh.vertices.len()];
         let alive: Vec<bool> = mesh.triangles.iter().map(|t| !repeats(t)).collect();
         for (t, triangle) in mesh.triangles.iter().enumerate().filter(|(t, _)| alive[*t]) {
@@ -44,6 +44,9 @@ impl Surface {
         for edge in edges.iter().filter(|edge| edge.count() > 2) {
             surface.fixed[edge.low as usize] = true;
             surface.fixed[edge.high as usize] = true;
+        }
+        for &v in held.iter().filter(|v| (**v as usize) < mesh.vertices.len()) {
+            surface.fixed[v as usize] = true;
         }
         for v in 0..surface.fixed.len() as u32 {
             surface.fixed[v as usize] |= !surface.is_one_fan(v);
@@ -196,8 +199,8 @@ impl Surface {
         self.vertices[keep as usize] = position;
     }
 
-    /// What is left, as a mesh without unused vertices; both keep their order. The attributes are still to be found.
-    pub(super) fn to_mesh(&self) -> Mesh {
+    /// What is left, as a mesh without unused vertices, and the number of each vertex in it; both keep their order. The attributes are still to be found.
+    pub(super) fn to_mesh(&self) -> (Mesh, Vec<Option<u32>>) {
         let mut number = vec![None; self.vertices.len()];
         let mut mesh = Mesh::default();
         for (v, _) in self.stars.iter().enumerate().filter(|(_, star)| !star.is_empty()) {
@@ -206,6 +209,6 @@ impl Surface {
         }
         let live = self.triangles.iter().zip(&self.alive).filter(|(_, alive)| **alive);
         mesh.triangles = live.map(|(t, _)| t.map(|v| number[v as usize].unwrap_or_default())).collect();
-        mesh
+        (mesh, number)
     }
 }

@@ -1,5 +1,6 @@
 //! Meshes measured against closed forms.
 
+mod cluster;
 mod compare;
 mod components;
 mod creases;

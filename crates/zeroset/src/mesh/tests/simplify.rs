@@ -2,7 +2,7 @@ use super::{mapped, mesh, sheet, together};
 use crate::cloud::Attributes;
 use crate::mesh::{
     CompareParams, Mesh, SHARP_ANGLE, SimplifyError, SimplifyParams, SimplifyReport, compare, creases,
-    self_intersections, simplify, topology,
+    self_intersections, simplify, simplify_held, topology,
 };
 use crate::sample::{Chance, Scene, SceneKind};
 use crate::vec3::{self, Vec3};
@@ -178,6 +178,30 @@ fn values_come_from_the_nearest_place() {
         };
         assert!(expected.contains(&classes[i]), "{v:?}");
     }
+}
+
+#[test]
+fn held_vertices_stay_with_their_values_and_the_edges_between_them() {
+    let mut plane = shaken(&sheet(24), 2e-3);
+    plane.attributes.intensities = Some((0..25 * 25).map(|i| 0.1 * i as f32).collect());
+    // One side, and one in the midst.
+    let held: Vec<u32> = (0..25).chain([313]).collect();
+    let params = within(0.05);
+    let free = simplified(&plane, &params).0;
+    let (light, numbers, report) = simplify_held(&plane, &held, &params, &()).unwrap();
+    assert!(report.deviation.max() <= 0.05);
+    assert!(light.triangles.len() > free.triangles.len() && light.triangles.len() < plane.triangles.len() / 4);
+    let numbers: Vec<usize> = numbers.into_iter().map(|number| number.unwrap() as usize).collect();
+    for (&old, &new) in held.iter().zip(&numbers) {
+        assert_eq!(light.vertices[new].map(f64::to_bits), plane.vertices[old as usize].map(f64::to_bits));
+        let value = |mesh: &Mesh, v: usize| mesh.attributes.intensities.as_ref().unwrap()[v].to_bits();
+        assert_eq!(value(&light, new), value(&plane, old as usize));
+    }
+    for pair in numbers[..25].windows(2) {
+        assert!(light.triangles.iter().any(|t| pair.iter().all(|&v| t.contains(&(v as u32)))), "{pair:?}");
+    }
+    // Without any, nothing else is done.
+    assert!(simplify_held(&plane, &[], &params, &()).unwrap().0 == free);
 }
 
 #[test]
