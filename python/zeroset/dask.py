@@ -304,7 +304,7 @@ def reconstruct(
     bounds: Sequence[Sequence[float]] | None = None,
     attributes: Literal["off", "rgb", "intensity", "class"] = "rgb",
     max_error: float | None = None,
-    tile_format: Literal["glb", "ply"] = "glb",
+    tile_format: Literal["glb", "ply", "zset"] = "glb",
     scratch: Path | None = None,
     storage_options: Mapping[str, Any] | None = None,
     threads: int | None = None,
@@ -353,8 +353,8 @@ def reconstruct(
         Which values the vertices get from the nearest points.
     max_error : float, optional
         Simplifies each tile as far as it moves by no more than this, in the unit of the points.
-    tile_format : {"glb", "ply"}
-        How tiles are written: GLB with levels of detail and a ``tileset.json`` for 3D Tiles, or PLY in world coordinates.
+    tile_format : {"glb", "ply", "zset"}
+        How tiles are written: GLB with levels of detail and a ``tileset.json`` for 3D Tiles, PLY in world coordinates, or models.
     scratch : path, optional
         A new folder that all workers see, for the files between tasks. Only for an `output` that is a URL.
     storage_options : dict, optional

@@ -223,5 +223,6 @@ fn id((x, y): Tile) -> TileId {
 }
 
 fn format(options: &Bound<'_, PyDict>) -> PyResult<TileFormat> {
-    Options(options).word("tile_format", &[("glb", TileFormat::Glb), ("ply", TileFormat::Ply)])
+    Options(options)
+        .word("tile_format", &[("glb", TileFormat::Glb), ("ply", TileFormat::Ply), ("zset", TileFormat::Zset)])
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use zeroset::monitor::Cancelled;
 use zeroset::reconstruct::ReconstructError;
-use zeroset_io::{IoError, shown};
+use zeroset_io::{GlobeError, IoError, shown};
 
 /// Why tiles were not made.
 #[derive(Debug, thiserror::Error)]
@@ -42,6 +42,9 @@ pub enum TilesError {
     /// Inputs without any point.
     #[error("no points are left to sort into tiles; check the inputs and what is left out")]
     NoPoints,
+    /// A position cannot be placed on the globe.
+    #[error(transparent)]
+    Globe(#[from] GlobeError),
     /// The monitor asked to stop.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),

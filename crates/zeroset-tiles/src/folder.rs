@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use zeroset::tile::{NodeId, TileId, TilePlan};
-use zeroset_io::{IoError, write_atomically};
+use zeroset_io::{GlobeError, IoError, write_atomically};
 
 use crate::binary::read;
+use crate::placement::Placement;
 use crate::{Sorted, TilesError, Written};
 
 /// A folder with what was made so far.
@@ -172,6 +173,12 @@ impl Folder {
     pub fn sorted(&self) -> Result<Option<Sorted>, TilesError> {
         let path = self.sorted_at();
         if path.exists() { read_json(&path).map(Some) } else { Ok(None) }
+    }
+
+    /// Why a tileset of the points does not stand on the globe; `None` if it does.
+    #[must_use]
+    pub fn off_the_globe(sorted: &Sorted, plan: &TilePlan) -> Option<GlobeError> {
+        Placement::on_globe(sorted, plan).err()
     }
 
     /// The plan, once there is one.

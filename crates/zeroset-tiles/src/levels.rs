@@ -5,6 +5,7 @@ use zeroset::tile::{LevelMesh, Node, NodeId, TileId, TilePlan};
 
 use crate::folder::{create, read_json, write_json};
 use crate::mesh::{read_level_mesh, write_level_mesh};
+use crate::tileset::Surface;
 use crate::{Folder, Sorted, TileFormat, TilesError};
 
 /// A square of tiles that was made.
@@ -18,6 +19,8 @@ pub struct LevelEntry {
     pub triangles: u64,
     /// Its box in local coordinates of the plan.
     pub bounds: [[f64; 3]; 2],
+    /// Its box in coordinates of the tileset.
+    pub volume: [[f64; 3]; 2],
     /// No place of it is farther than this from the tiles, in the unit of the points; nor they from it, but for what is narrower than a cell of the level.
     pub error: f64,
 }
@@ -44,8 +47,8 @@ impl Folder {
         let error = made.error + plan.rounding(node.id.level) + plan.rounding(0);
         let file = format!("levels/{}.glb", node.id);
         let entry = self
-            .write_surface(plan, node, made.mesh, &file, TileFormat::Glb)?
-            .map(|(triangles, bounds)| LevelEntry { id: node.id, file, triangles, bounds, error });
+            .write_surface(sorted, plan, node, (made.mesh, &file), TileFormat::Glb)?
+            .map(|Surface { triangles, bounds, volume }| LevelEntry { id: node.id, file, triangles, bounds, volume, error });
         write_json(&done, &entry)?;
         Ok(entry)
     }

@@ -25,6 +25,7 @@ mod folder;
 mod levels;
 mod mesh;
 mod pieces;
+mod placement;
 mod points;
 mod run;
 mod sort;

@@ -7,7 +7,7 @@ use zeroset::cloud::Cloud;
 use zeroset::constraint::Constraints;
 use zeroset::field::LatticeField;
 use zeroset::mesh::{Mesh, drop_small_components};
-use zeroset::model::{Model, Provenance, Solid};
+use zeroset::model::{Fitted, Model, Provenance, Solid};
 use zeroset::monitor::Monitor;
 use zeroset::reconstruct::{ReconstructError, ReconstructParams};
 use zeroset::tile::{Measurement, Strip, TileFit, TileId, TileMesh, TilePlan, merge};
@@ -27,6 +27,8 @@ pub enum TileFormat {
     Glb,
     /// PLY in world coordinates.
     Ply,
+    /// The model of each tile.
+    Zset,
 }
 
 impl TileFormat {
@@ -36,6 +38,7 @@ impl TileFormat {
         match self {
             Self::Glb => "glb",
             Self::Ply => "ply",
+            Self::Zset => "zset",
         }
     }
 }
@@ -143,12 +146,7 @@ impl Folder {
             return crate::binary::Out::default().write(&self.strip(tile));
         };
         let strip = plan.strip(tile, &fit)?;
-        let model = Model {
-            solid: Solid::Fitted(Arc::new(fit.into_fitted())),
-            crs: sorted.crs.clone(),
-            provenance: Provenance { version: env!("CARGO_PKG_VERSION").to_owned(), ..Provenance::default() },
-        };
-        write_model(&self.fitted(tile), &model)?;
+        write_model(&self.fitted(tile), &model_of(fit.into_fitted(), sorted))?;
         write_field(&self.strip(tile), strip.field())
     }
 
@@ -178,22 +176,38 @@ impl Folder {
         }
         create(&self.work().join("mesh"))?;
         let mut mesh = TileMesh { mesh: Mesh::default(), shared: Vec::new() };
-        if self.has_fit(tile)? {
-            let mut strips = Vec::new();
-            for other in plan.neighbors(tile) {
-                if self.has_fit(other)? {
-                    strips.push((other, Strip::new(read_field(&self.strip(other))?)));
-                }
-            }
-            let strips: Vec<(TileId, &Strip)> = strips.iter().map(|(id, strip)| (*id, strip)).collect();
-            let path = self.fitted(tile);
-            let Solid::Fitted(fitted) = read_model(&path)?.solid else { return Err(TilesError::damaged(&path)) };
-            let fit = TileFit::new(Arc::try_unwrap(fitted).map_err(|_| TilesError::damaged(&path))?);
+        if let Some((fit, strips)) = self.read_fit(plan, tile)? {
             let load = |tile, thinning| self.load(sorted, tile, thinning);
-            mesh = plan.mesh(tile, &fit, &strips, load, monitor)?.0;
+            mesh = plan.mesh(tile, &fit, &borrowed(&strips), load, monitor)?.0;
         }
         write_tile_mesh(&self.mesh(tile), &mesh)?;
         write_json(&self.pieces(tile), &pieces(&mesh))
+    }
+
+    /// What was fitted to a tile, and the strips around it; `None` if there was nothing to fit.
+    fn read_fit(&self, plan: &TilePlan, tile: TileId) -> Result<Option<(TileFit, Vec<(TileId, Strip)>)>, TilesError> {
+        if !self.has_fit(tile)? {
+            return Ok(None);
+        }
+        let mut strips = Vec::new();
+        for other in plan.neighbors(tile) {
+            if self.has_fit(other)? {
+                strips.push((other, Strip::new(read_field(&self.strip(other))?)));
+            }
+        }
+        let path = self.fitted(tile);
+        let Solid::Fitted(fitted) = read_model(&path)?.solid else { return Err(TilesError::damaged(&path)) };
+        let fit = TileFit::new(Arc::try_unwrap(fitted).map_err(|_| TilesError::damaged(&path))?);
+        Ok(Some((fit, strips)))
+    }
+
+    /// The model of a tile, the same as its neighbours' where they meet; `None` if there was nothing to fit. It and its neighbours must be fitted.
+    ///
+    /// # Errors
+    /// If a file cannot be read.
+    pub fn model(&self, sorted: &Sorted, plan: &TilePlan, tile: TileId) -> Result<Option<Model>, TilesError> {
+        let Some((fit, strips)) = self.read_fit(plan, tile)? else { return Ok(None) };
+        Ok(Some(model_of(plan.model(tile, &fit, &borrowed(&strips))?, sorted)))
     }
 
     /// Simplifies the surface of a tile without small pieces, if the plan asks for it. It and its neighbours must be extracted.
@@ -255,6 +269,18 @@ impl Folder {
         }
         if mesh.triangles.is_empty() { Err(ReconstructError::NoSurface.into()) } else { Ok(mesh) }
     }
+}
+
+fn model_of(fitted: Fitted, sorted: &Sorted) -> Model {
+    Model {
+        solid: Solid::Fitted(Arc::new(fitted)),
+        crs: sorted.crs.clone(),
+        provenance: Provenance { version: env!("CARGO_PKG_VERSION").to_owned(), ..Provenance::default() },
+    }
+}
+
+fn borrowed(strips: &[(TileId, Strip)]) -> Vec<(TileId, &Strip)> {
+    strips.iter().map(|(id, strip)| (*id, strip)).collect()
 }
 
 fn common_divisor(a: usize, b: usize) -> usize {

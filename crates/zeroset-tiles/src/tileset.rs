@@ -1,6 +1,9 @@
-//! Tiles as files for others: GLB with a 3D Tiles `tileset.json`, or PLY; and their outlines as GeoJSON.
+//! Tiles as files for others: GLB with a 3D Tiles `tileset.json`, PLY, or models; and their outlines as GeoJSON.
 //!
 //! # Placement
+//! A tileset stands on the globe if the reference system of the points can be placed there: each vertex is, and its place is told in metres east, north and up of the
+//! middle of all tiles, which the transform of the root takes to EPSG:4978. Else it stands in the local coordinates of the plan, and the transform is their offset.
+//!
 //! Vertices of all tiles lie on one raster, whose step is a power of two, and so do the middles of tiles. In a GLB positions are single precision relative to the
 //! middle, which they hold exactly, and the middle is the translation of a node. So what two tiles share is equal bit for bit in world coordinates, too.
 //!
@@ -20,9 +23,10 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use zeroset::mesh::Mesh;
 use zeroset::tile::{Node, NodeId, TileId, TilePlan};
-use zeroset_io::{WriteOptions, write_mesh};
+use zeroset_io::{WriteOptions, write_mesh, write_model};
 
 use crate::folder::{create, write_json};
+use crate::placement::{Placement, box_of};
 use crate::{Folder, LevelEntry, Sorted, TileFormat, TilesError, Written};
 
 /// A tile that was written.
@@ -36,6 +40,18 @@ pub struct TileEntry {
     pub triangles: u64,
     /// Its box in local coordinates of the plan.
     pub bounds: [[f64; 3]; 2],
+    /// Its box in coordinates of the tileset, for GLB.
+    pub volume: [[f64; 3]; 2],
+}
+
+/// A surface that was written.
+pub(crate) struct Surface {
+    /// Triangles.
+    pub(crate) triangles: u64,
+    /// Its box in local coordinates of the plan.
+    pub(crate) bounds: [[f64; 3]; 2],
+    /// Its box in coordinates of the tileset.
+    pub(crate) volume: [[f64; 3]; 2],
 }
 
 impl Folder {
@@ -52,34 +68,58 @@ impl Folder {
     ) -> Result<Option<TileEntry>, TilesError> {
         let mesh = self.surface(sorted, plan, tile)?.mesh;
         let file = format!("tiles/{tile}.{}", format.suffix());
-        let written = self.write_surface(plan, &tile.into(), mesh, &file, format)?;
-        Ok(written.map(|(triangles, bounds)| TileEntry { id: tile, file, triangles, bounds }))
+        let written = match format {
+            TileFormat::Zset => self.write_model(sorted, plan, tile, (mesh, &file))?,
+            TileFormat::Glb | TileFormat::Ply => {
+                self.write_surface(sorted, plan, &tile.into(), (mesh, &file), format)?
+            }
+        };
+        Ok(written.map(|Surface { triangles, bounds, volume }| TileEntry { id: tile, file, triangles, bounds, volume }))
     }
 
-    /// Writes the surface of a square of tiles; its number of triangles and box, or `None` without any.
+    /// Writes the model of a tile that has a surface.
+    fn write_model(
+        &self,
+        sorted: &Sorted,
+        plan: &TilePlan,
+        tile: TileId,
+        (mesh, file): (Mesh, &str),
+    ) -> Result<Option<Surface>, TilesError> {
+        let Some(model) = self.model(sorted, plan, tile)?.filter(|_| !mesh.triangles.is_empty()) else {
+            return Ok(None);
+        };
+        let path = self.path().join(file);
+        path.parent().map_or(Ok(()), create)?;
+        write_model(&path, &model)?;
+        let bounds = box_of(&mesh);
+        Ok(Some(Surface { triangles: mesh.triangles.len() as u64, bounds, volume: bounds }))
+    }
+
+    /// Writes the surface of a square of tiles; `None` if it has none.
     pub(crate) fn write_surface(
         &self,
+        sorted: &Sorted,
         plan: &TilePlan,
         node: &Node,
-        mut mesh: Mesh,
-        file: &str,
+        (mut mesh, file): (Mesh, &str),
         format: TileFormat,
-    ) -> Result<Option<(u64, [[f64; 3]; 2])>, TilesError> {
+    ) -> Result<Option<Surface>, TilesError> {
         if mesh.triangles.is_empty() {
             return Ok(None);
         }
-        plan.put_on_raster(node.id.level, &mut mesh.vertices);
+        plan.put_on_raster(node.id.level, 1.0, &mut mesh.vertices);
         let bounds = box_of(&mesh);
         let triangles = mesh.triangles.len() as u64;
         let placed = match format {
-            TileFormat::Glb => about_middle(mesh, plan.middle(node, bounds)),
-            TileFormat::Ply => Mesh { world_from_local: plan.world_from_local, ..mesh },
+            TileFormat::Glb => Placement::of(sorted, plan).place(plan, node, mesh, bounds)?,
+            TileFormat::Ply | TileFormat::Zset => Mesh { world_from_local: plan.world_from_local, ..mesh },
         };
         let options = WriteOptions { resolution: Some(plan.report.resolution), ..WriteOptions::default() };
         let path = self.path().join(file);
         path.parent().map_or(Ok(()), create)?;
         write_mesh(&path, &placed, &options)?;
-        Ok(Some((triangles, bounds)))
+        let volume = box_of(&placed).map(|corner| std::array::from_fn(|a| corner[a] + placed.world_from_local[a]));
+        Ok(Some(Surface { triangles, bounds, volume }))
     }
 
     /// Writes what lists the tiles that were written, last of all. Levels of detail must be there for GLB.
@@ -98,29 +138,12 @@ impl Folder {
         let mut levels = Vec::new();
         if format == TileFormat::Glb {
             levels = self.level_entries(plan)?;
-            write_json(&self.path().join("tileset.json"), &tileset(plan, &entries, &levels))?;
+            write_json(&self.path().join("tileset.json"), &tileset(&Placement::of(sorted, plan), plan, &entries, &levels))?;
         }
         let written = Written { tiles: entries, levels };
         write_json(&self.done_at(), &written)?;
         Ok(written)
     }
-}
-
-/// A mesh relative to a position, which becomes its offset.
-fn about_middle(mut mesh: Mesh, middle: [f64; 3]) -> Mesh {
-    mesh.vertices.iter_mut().for_each(|v| *v = std::array::from_fn(|a| v[a] - middle[a]));
-    Mesh { world_from_local: middle, ..mesh }
-}
-
-fn box_of(mesh: &Mesh) -> [[f64; 3]; 2] {
-    let mut bounds = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
-    for v in &mesh.vertices {
-        for a in 0..3 {
-            bounds[0][a] = bounds[0][a].min(v[a]);
-            bounds[1][a] = bounds[1][a].max(v[a]);
-        }
-    }
-    bounds
 }
 
 /// The outlines of the tiles as GeoJSON, in world coordinates.
@@ -189,19 +212,19 @@ fn volume([low, high]: [[f64; 3]; 2], least: f64) -> Value {
     ]})
 }
 
-/// The tileset: a tree of the files, in a local frame whose origin is the offset of the plan, with z up.
-fn tileset(plan: &TilePlan, tiles: &[TileEntry], levels: &[LevelEntry]) -> Value {
-    let least = 1e-3 * plan.report.resolution;
+/// The tileset: a tree of the files.
+fn tileset(placement: &Placement, plan: &TilePlan, tiles: &[TileEntry], levels: &[LevelEntry]) -> Value {
+    let least = 1e-3 * plan.report.resolution * placement.unit();
     let leaf =
-        |tile: &TileEntry| (tile.id.into(), Branch::new(Some((&tile.file, tile.bounds)), 0.0, Vec::new(), least));
+        |tile: &TileEntry| (tile.id.into(), Branch::new(Some((&tile.file, tile.volume)), 0.0, Vec::new(), least));
     let mut branches: BTreeMap<NodeId, Branch> = tiles.iter().map(leaf).collect();
     let shown: BTreeMap<NodeId, &LevelEntry> = levels.iter().map(|entry| (entry.id, entry)).collect();
     for node in plan.levels().into_iter().flatten() {
         let children: Vec<Branch> = node.children.iter().filter_map(|child| branches.remove(child)).collect();
         if !children.is_empty() {
             let entry = shown.get(&node.id);
-            let content = entry.map(|entry| (entry.file.as_str(), entry.bounds));
-            let error = entry.map_or(0.0, |entry| entry.error);
+            let content = entry.map(|entry| (entry.file.as_str(), entry.volume));
+            let error = entry.map_or(0.0, |entry| entry.error * placement.unit());
             branches.insert(node.id, Branch::new(content, error, children, least));
         }
     }
@@ -217,9 +240,8 @@ fn tileset(plan: &TilePlan, tiles: &[TileEntry], levels: &[LevelEntry]) -> Value
         }
     };
     let error = size(root.bounds).max(root.error);
-    let [x, y, z] = plan.world_from_local;
     let mut value = root.value;
-    value["transform"] = json!([1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, x, y, z, 1.0]);
+    value["transform"] = json!(placement.transform(plan));
     value["refine"] = json!("REPLACE");
     json!({
         "asset": { "version": "1.1", "generator": WriteOptions::default().generator },

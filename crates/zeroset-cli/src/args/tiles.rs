@@ -15,7 +15,7 @@ pub struct TileArgs {
     /// Tiles at a time [default: one for each thread, as far as memory goes].
     #[arg(long, value_name = "N", value_parser = values::threads, help_heading = "Tiles")]
     pub jobs: Option<NonZeroUsize>,
-    /// How tiles in a folder are written: glb, with levels of detail and a tileset.json for 3D Tiles, or ply [default: glb].
+    /// How tiles in a folder are written: glb, with levels of detail and a tileset.json for 3D Tiles; ply; or zset, their models [default: glb].
     #[arg(long, value_name = "FORMAT", hide_possible_values = true, help_heading = "Tiles")]
     pub tile_format: Option<TileFormatChoice>,
     /// Keep what was handed from step to step in the folder's subfolder work, once all is done.
@@ -29,4 +29,5 @@ pub struct TileArgs {
 pub enum TileFormatChoice {
     Glb,
     Ply,
+    Zset,
 }

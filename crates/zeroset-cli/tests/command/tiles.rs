@@ -9,7 +9,7 @@ use serde_json::Value;
 use zeroset::cloud::Cloud;
 use zeroset::mesh::{CompareParams, Mesh, compare, topology};
 use zeroset::sample::{Scene, SceneKind};
-use zeroset_io::{WriteOptions, read_mesh, write_cloud};
+use zeroset_io::{WriteOptions, read_mesh, read_model, write_cloud};
 
 use crate::common::{folder, line};
 
@@ -331,4 +331,29 @@ fn the_command_of_the_readme_makes_a_city() {
     let tileset: Value = serde_json::from_slice(&made["tileset.json"]).unwrap();
     assert_eq!(tileset["asset"]["version"], "1.1");
     assert!(made.keys().filter(|name| name.starts_with("tiles/")).count() >= 4, "{:?}", made.keys());
+}
+
+/// The models of two tiles are one where they meet, and each makes its surface by itself.
+#[test]
+fn tiles_as_models_agree_where_they_meet() {
+    let folder = folder();
+    city(folder.path());
+    line(folder.path(), &format!("{RUN} -o out/ --tile-format zset")).ok();
+    let made = files(&folder.path().join("out"));
+    assert!(!made.contains_key("tileset.json") && made.keys().all(|name| !name.starts_with("levels")));
+    let model = |name: &str| read_model(&folder.path().join("out/tiles").join(name)).unwrap();
+    let [west, east] = ["-1_0.zset", "0_0.zset"].map(|name| model(name).solid.field([0.0; 3]).unwrap());
+    let (mut known, mut most) = (0, 0.0_f64);
+    for i in 0..4000 {
+        // Beside the face at x = 0, a node at most to either side.
+        let p = [f64::from(i % 17) * 0.001 - 0.008, 0.05 + f64::from(i / 17) * 0.0015, 0.01 + f64::from(i % 7) * 0.004];
+        let values = [west.value(p), east.value(p)];
+        if values.iter().all(|v| v.abs() < 0.02) {
+            known += 1;
+            most = most.max((values[0] - values[1]).abs());
+        }
+    }
+    assert!(known > 500 && most < 1e-6, "{known} {most}");
+    line(folder.path(), "mesh out/tiles/0_0.zset -o east.ply -q").ok();
+    assert_eq!(topology(&read_mesh(&folder.path().join("east.ply")).unwrap()).unwrap().nonmanifold_edges, 0);
 }

@@ -6,6 +6,7 @@ use super::layout::{BLEND, CONTEXT, Layout};
 use super::{TileFit, TileId, TilePlan};
 use crate::domain::{BLOCK_NODES, Blocks, Mask, mask_get, mask_set};
 use crate::field::LatticeField;
+use crate::model::Fitted;
 use crate::reconstruct::ReconstructError;
 
 /// How far on either side of the faces of a tile its neighbours see its F, in nodes.
@@ -52,6 +53,16 @@ impl TilePlan {
             near.iter().map(|&b| field.known[b]).collect(),
             near.iter().flat_map(|&b| &field.values[BLOCK_NODES * b..BLOCK_NODES * (b + 1)]).copied().collect(),
         )))
+    }
+
+    /// The model of a tile, which is its neighbours' where they meet: F in the tile and 14 nodes beyond its faces, with what the points show.
+    /// `strips` are those of the neighbours that were fitted.
+    ///
+    /// # Errors
+    /// If the plan's lattice cannot be made.
+    pub fn model(&self, tile: TileId, fit: &TileFit, strips: &[(TileId, &Strip)]) -> Result<Fitted, ReconstructError> {
+        let field = self.agreed(&Layout::new(self)?, tile, fit, strips);
+        Ok(Fitted::kept(field, fit.fitted().parts().clone())?)
     }
 
     /// F of a tile and what is beside it, the same in all tiles where they share a vertex: the mean of those that know it, by weights that go

@@ -192,24 +192,31 @@ impl TilePlan {
         Ok(LevelMesh { mesh: clustered.mesh, shared, error: error + clustered.moved })
     }
 
-    /// The raster that the files of a level keep to: the finest that single precision holds all over a square, but none finer than that of tiles.
-    fn raster(&self, level: u32) -> Raster {
+    /// The raster that the files of a level keep to: the finest that single precision holds all over a square, but none finer than that of tiles. A unit of the plan
+    /// is so long in coordinates of the files.
+    fn raster(&self, level: u32, unit: f64) -> Raster {
         let half = 0.5 * self.side * 2.0_f64.powi(level as i32) + BEYOND * self.report.resolution;
         // Single precision holds twice what a raster is made for.
-        Raster::up_to(self.side.max(0.5 * half))
+        Raster::up_to(unit * self.side.max(0.5 * half))
     }
 
     /// How far putting vertices on the raster of a level moves them at most.
     #[must_use]
     pub fn rounding(&self, level: u32) -> f64 {
-        0.5 * 3.0_f64.sqrt() * self.raster(level).step()
+        0.5 * 3.0_f64.sqrt() * self.raster(level, 1.0).step()
     }
 
     /// Puts vertices on the raster of a level. There single precision holds them, relative to the middle of their square; those of tiles are there already, unless they were
-    /// simplified, and those that neighbours share go to the same place in both.
-    pub fn put_on_raster(&self, level: u32, vertices: &mut [[f64; 3]]) {
-        let raster = self.raster(level);
+    /// simplified, and those that neighbours share go to the same place in both. `unit` is how long a unit of the plan is in their coordinates: 1 in local ones.
+    pub fn put_on_raster(&self, level: u32, unit: f64, vertices: &mut [[f64; 3]]) {
+        let raster = self.raster(level, unit);
         vertices.iter_mut().for_each(|v| *v = raster.nearest(*v));
+    }
+
+    /// The place on the raster of a level that is nearest to a position, in coordinates in which a unit of the plan is so long.
+    #[must_use]
+    pub fn on_raster(&self, level: u32, unit: f64, position: [f64; 3]) -> [f64; 3] {
+        self.raster(level, unit).nearest(position)
     }
 
     /// The place that positions of a square's surface are told from, in local coordinates: about the middle of its box, and on the raster of its level.
@@ -220,6 +227,6 @@ impl TilePlan {
         let (low, high) = (up.upright(low), up.upright(high));
         let half = 0.5 * 2.0_f64.powi(node.id.level as i32);
         let [x, y] = [0, 1].map(|a| (node.first[a] as f64 + half) * self.side - offset[a]);
-        self.raster(node.id.level).nearest(up.restore([x, y, 0.5 * (low[2] + high[2])]))
+        self.raster(node.id.level, 1.0).nearest(up.restore([x, y, 0.5 * (low[2] + high[2])]))
     }
 }

@@ -247,6 +247,7 @@ fn surfaces(
 fn format(args: &ReconstructArgs) -> TileFormat {
     match args.tiles.tile_format {
         Some(TileFormatChoice::Ply) => TileFormat::Ply,
+        Some(TileFormatChoice::Zset) => TileFormat::Zset,
         Some(TileFormatChoice::Glb) | None => TileFormat::Glb,
     }
 }
