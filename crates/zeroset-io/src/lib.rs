@@ -30,7 +30,8 @@
 //! - A file is written completely or not at all: see [`write_atomically`].
 //!
 //! # Not guaranteed
-//! - Coordinates are not transformed between reference systems, nor between units.
+//! - Coordinates are not transformed between reference systems, nor between units: readers give what files hold.
+//!   [`globe`] tells where on the globe it lies.
 //! - GPS time, return numbers, normals and extra columns are not kept.
 
 pub mod cloud;
@@ -41,6 +42,7 @@ mod epsg;
 mod error;
 pub mod features;
 mod format;
+pub mod globe;
 mod guard;
 mod input;
 pub mod mesh;
@@ -65,6 +67,7 @@ pub use constraints::{
 pub use error::{IoError, shown};
 pub use features::{FeatureFile, FeatureFormat, FeatureOutput, read_features, read_features_bytes, write_features};
 pub use format::{CloudFormat, MeshFormat, by_suffix};
+pub use globe::{Frame, Globe, GlobeError};
 pub use mesh::{WriteOptions, WriteReport, read_mesh, read_mesh_bytes, write_mesh};
 pub use model::{check_model_suffix, is_model, read_model, read_model_bytes, write_model};
 pub use output::{abandon_writes, check_writable, write_atomically};

@@ -224,7 +224,7 @@ impl From<TilesError> for Failure {
             TilesError::OtherRun { .. } | TilesError::NotEmpty { .. } => "FileError",
             TilesError::Damaged { .. } => "FormatError",
             TilesError::Missing { .. } => "FileMissingError",
-            TilesError::NoPoints => "InputError",
+            TilesError::NoPoints | TilesError::Globe(_) => "InputError",
         };
         Self::new(class, error.to_string())
     }

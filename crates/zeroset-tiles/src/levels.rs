@@ -46,9 +46,9 @@ impl Folder {
         // To the tiles as they are written, too.
         let error = made.error + plan.rounding(node.id.level) + plan.rounding(0);
         let file = format!("levels/{}.glb", node.id);
-        let entry = self
-            .write_surface(sorted, plan, node, (made.mesh, &file), TileFormat::Glb)?
-            .map(|Surface { triangles, bounds, volume }| LevelEntry { id: node.id, file, triangles, bounds, volume, error });
+        let entry = self.write_surface(sorted, plan, node, (made.mesh, &file), TileFormat::Glb)?.map(
+            |Surface { triangles, bounds, volume }| LevelEntry { id: node.id, file, triangles, bounds, volume, error },
+        );
         write_json(&done, &entry)?;
         Ok(entry)
     }

@@ -138,7 +138,10 @@ impl Folder {
         let mut levels = Vec::new();
         if format == TileFormat::Glb {
             levels = self.level_entries(plan)?;
-            write_json(&self.path().join("tileset.json"), &tileset(&Placement::of(sorted, plan), plan, &entries, &levels))?;
+            write_json(
+                &self.path().join("tileset.json"),
+                &tileset(&Placement::of(sorted, plan), plan, &entries, &levels),
+            )?;
         }
         let written = Written { tiles: entries, levels };
         write_json(&self.done_at(), &written)?;

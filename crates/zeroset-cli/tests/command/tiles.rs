@@ -9,7 +9,7 @@ use serde_json::Value;
 use zeroset::cloud::Cloud;
 use zeroset::mesh::{CompareParams, Mesh, compare, topology};
 use zeroset::sample::{Scene, SceneKind};
-use zeroset_io::{WriteOptions, read_mesh, read_model, write_cloud};
+use zeroset_io::{Globe, WriteOptions, read_mesh, read_model, write_cloud};
 
 use crate::common::{folder, line};
 
@@ -329,8 +329,33 @@ fn the_command_of_the_readme_makes_a_city() {
     assert!(said.contains(" tiles of 250 from 60,000 points"), "{said}");
     let made = files(&folder.path().join("city/tiles"));
     let tileset: Value = serde_json::from_slice(&made["tileset.json"]).unwrap();
-    assert_eq!(tileset["asset"]["version"], "1.1");
+    assert!(said.contains("stands on the globe"), "{said}");
     assert!(made.keys().filter(|name| name.starts_with("tiles/")).count() >= 4, "{:?}", made.keys());
+
+    // Every vertex, through the transforms of the file and of the tileset, lies where the reference system says that a point of the surface is: within
+    // 1 mm of where the same vertex of the PLY is placed.
+    let transform: Vec<f64> =
+        tileset["root"]["transform"].as_array().unwrap().iter().map(|v| v.as_f64().unwrap()).collect();
+    let earth = |p: [f64; 3]| -> [f64; 3] {
+        std::array::from_fn(|a| (0..3).map(|c| transform[4 * c + a] * p[c]).sum::<f64>() + transform[12 + a])
+    };
+    let plain = command.replace("-o city/tiles/", "-o plain/ --tile-format ply");
+    line(folder.path(), &plain).ok();
+    let globe = Globe::of("EPSG:28992").unwrap();
+    let mut checked = 0;
+    for name in made.keys().filter_map(|name| name.strip_prefix("tiles/")?.strip_suffix(".glb")) {
+        let glb = as_stored(&made[&format!("tiles/{name}.glb")]);
+        let ply = read_mesh(&folder.path().join(format!("plain/tiles/{name}.ply"))).unwrap();
+        assert_eq!(glb.triangles, ply.triangles);
+        for (v, w) in glb.vertices.iter().zip(&ply.vertices) {
+            let found = earth(std::array::from_fn(|a| v[a] + glb.world_from_local[a]));
+            let truth = globe.geocentric(std::array::from_fn(|a| w[a] + ply.world_from_local[a])).unwrap();
+            let off = (0..3).map(|a| (found[a] - truth[a]).powi(2)).sum::<f64>().sqrt();
+            assert!(off < 1e-3, "{name}: {off}");
+            checked += 1;
+        }
+    }
+    assert!(checked > 10_000, "{checked}");
 }
 
 /// The models of two tiles are one where they meet, and each makes its surface by itself.

@@ -20,7 +20,12 @@ pub(crate) fn vertical_code(crs: &str) -> Option<u32> {
     if let Some(codes) = crs.strip_prefix("EPSG:").or_else(|| crs.strip_prefix("epsg:")) {
         return codes.split_once('+')?.1.trim().parse().ok();
     }
-    VERTICAL.iter().find_map(|word| node(crs, word)).and_then(of_node)
+    vertical_node(crs).and_then(of_node)
+}
+
+/// What follows the opening bracket of the vertical system in WKT.
+pub(crate) fn vertical_node(crs: &str) -> Option<&str> {
+    VERTICAL.iter().find_map(|word| node(crs, word))
 }
 
 /// Whether a text is WKT of a geographic or a projected system.
@@ -44,7 +49,7 @@ pub(crate) enum Kind {
 
 const PROJECTED: [&str; 3] = ["PROJCS[", "PROJCRS[", "PROJECTEDCRS["];
 const GEODETIC: [&str; 5] = ["GEOGCS[", "GEOGCRS[", "GEOGRAPHICCRS[", "GEODCRS[", "GEODETICCRS["];
-const VERTICAL: [&str; 3] = ["VERT_CS[", "VERTCRS[", "VERTICALCRS["];
+const VERTICAL: [&str; 4] = ["VERT_CS[", "VERTCRS[", "VERTICALCRS[", "VERTCS["];
 
 /// What follows the opening bracket of the first node of a name.
 fn node<'a>(crs: &'a str, word: &str) -> Option<&'a str> {

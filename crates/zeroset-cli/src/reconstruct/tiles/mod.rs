@@ -154,6 +154,12 @@ fn make(
     } else if !args.tiles.keep_work {
         folder.remove_work()?;
     }
+    if !is_merged && format(args) == TileFormat::Glb {
+        console.say(&match Folder::off_the_globe(&sorted, &plan) {
+            None => "tileset.json stands on the globe; heights are taken as above the ellipsoid".to_owned(),
+            Some(why) => format!("note: tileset.json stands in coordinates of its own: {why}"),
+        });
+    }
     let triangles = written.tiles.iter().map(|entry| entry.triangles).sum();
     let total_seconds = start.elapsed().as_secs_f64();
     let what = format!(
