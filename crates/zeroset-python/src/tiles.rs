@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use zeroset::cloud::{Filter, NOISE_CLASSES};
+use zeroset::cloud::Filter;
 use zeroset::monitor::Monitor;
 use zeroset::reconstruct::ReconstructParams;
 use zeroset::tile::{Node, NodeId, TileId, TilePlan};
@@ -84,10 +84,7 @@ impl TileFolder {
         let options = Options(options);
         let up = options.scene_and_up()?.1;
         let only_classes: Option<Vec<u8>> = options.get("classes")?;
-        let noise = || {
-            let asked_for = |class: &u8| only_classes.as_ref().is_some_and(|only| only.contains(class));
-            NOISE_CLASSES.into_iter().filter(|class| !asked_for(class)).collect()
-        };
+        let noise = || Filter::excluded_by_default(only_classes.as_deref());
         let exclude_classes = options.get::<Option<Vec<u8>>>("exclude")?.unwrap_or_else(noise);
         let bounds = options.get::<Option<[[f64; 3]; 2]>>("bounds")?;
         let bounds = bounds.map(|[low, high]| [0, 1, 2].map(|a| [low[a], high[a]]));

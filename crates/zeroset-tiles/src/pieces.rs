@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use rustc_hash::FxHashMap;
 use serde::{Deserialize, Serialize};
-use zeroset::mesh::Mesh;
+use zeroset::mesh::Components;
 use zeroset::tile::TileMesh;
 
 /// A piece of a tile's surface with shared vertices.
@@ -16,36 +16,14 @@ pub(crate) struct Piece {
     pub(crate) keys: Vec<[u64; 3]>,
 }
 
-/// The piece of each vertex, and the triangles of each.
-fn numbered(mesh: &Mesh) -> (Vec<u32>, Vec<u64>) {
-    let mut parent: Vec<u32> = (0..mesh.vertices.len() as u32).collect();
-    fn root(parent: &mut [u32], mut v: u32) -> u32 {
-        while parent[v as usize] != v {
-            parent[v as usize] = parent[parent[v as usize] as usize];
-            v = parent[v as usize];
-        }
-        v
-    }
-    for &[a, b, c] in &mesh.triangles {
-        for other in [b, c] {
-            let (x, y) = (root(&mut parent, a), root(&mut parent, other));
-            parent[x.max(y) as usize] = x.min(y);
-        }
-    }
-    let roots: Vec<u32> = (0..parent.len() as u32).map(|v| root(&mut parent, v)).collect();
-    let mut triangles = vec![0; roots.len()];
-    mesh.triangles.iter().for_each(|t| triangles[roots[t[0] as usize] as usize] += 1);
-    (roots, triangles)
-}
-
 /// The pieces of a tile that others may go on with, in order.
 pub(crate) fn pieces(tile: &TileMesh) -> Vec<Piece> {
-    let (roots, triangles) = numbered(&tile.mesh);
+    let own = Components::of(&tile.mesh);
     let mut pieces: BTreeMap<u32, Piece> = BTreeMap::new();
     for &(v, key) in &tile.shared {
-        let root = roots[v as usize];
-        let new = Piece { triangles: triangles[root as usize], keys: Vec::new() };
-        pieces.entry(root).or_insert(new).keys.push(key);
+        let piece = own.of_vertex[v as usize];
+        let new = Piece { triangles: own.triangles[piece as usize] as u64, keys: Vec::new() };
+        pieces.entry(piece).or_insert(new).keys.push(key);
     }
     pieces.into_values().collect()
 }
@@ -57,14 +35,14 @@ pub(crate) fn drop_small(tile: &mut TileMesh, around: &[Vec<Piece>], least: u64)
     for (i, piece) in all.iter().enumerate() {
         piece.keys.iter().for_each(|key| of_key.entry(*key).or_default().push(i));
     }
-    let (roots, triangles) = numbered(&tile.mesh);
+    let own = Components::of(&tile.mesh);
     let mut keys: FxHashMap<u32, Vec<[u64; 3]>> = FxHashMap::default();
-    tile.shared.iter().for_each(|(v, key)| keys.entry(roots[*v as usize]).or_default().push(*key));
+    tile.shared.iter().for_each(|(v, key)| keys.entry(own.of_vertex[*v as usize]).or_default().push(*key));
     // What goes on in other tiles, and there in others again, until it is clear that it is large.
-    let is_small = |root: u32| {
-        let mut total = triangles[root as usize];
+    let is_small = |piece: u32| {
+        let mut total = own.triangles[piece as usize] as u64;
         let mut seen = vec![false; all.len()];
-        let mut open: Vec<[u64; 3]> = keys.get(&root).cloned().unwrap_or_default();
+        let mut open: Vec<[u64; 3]> = keys.get(&piece).cloned().unwrap_or_default();
         while total < least {
             let Some(key) = open.pop() else { return true };
             for &i in of_key.get(&key).into_iter().flatten() {
@@ -77,35 +55,27 @@ pub(crate) fn drop_small(tile: &mut TileMesh, around: &[Vec<Piece>], least: u64)
         false
     };
     let mut small: FxHashMap<u32, bool> = FxHashMap::default();
-    let TileMesh { mesh, shared } = tile;
-    mesh.triangles.retain(|t| {
-        let root = roots[t[0] as usize];
-        !*small.entry(root).or_insert_with(|| is_small(root))
-    });
-    // The others are numbered anew.
-    let mut used = vec![false; mesh.vertices.len()];
-    mesh.triangles.iter().flatten().for_each(|&v| used[v as usize] = true);
-    if used.iter().all(|used| *used) {
-        return;
+    for [vertex, ..] in &tile.mesh.triangles {
+        let piece = own.of_vertex[*vertex as usize];
+        small.entry(piece).or_insert_with(|| is_small(piece));
     }
-    let mut next = 0;
-    let number: Vec<u32> = used
-        .iter()
-        .map(|&used| {
-            next += u32::from(used);
-            next.wrapping_sub(1)
-        })
-        .collect();
-    mesh.triangles.iter_mut().flatten().for_each(|v| *v = number[*v as usize]);
-    shared.retain(|(v, _)| used[*v as usize]);
-    shared.iter_mut().for_each(|(v, _)| *v = number[*v as usize]);
-    let mut keep = used.iter();
-    mesh.vertices.retain(|_| keep.next().copied().unwrap_or(false));
-    mesh.attributes.retain(&used);
+    if small.values().any(|small| *small) {
+        // What has no triangles is of no piece, and goes, too.
+        let number = own.drop_from(&mut tile.mesh, |piece| small.get(&piece).copied().unwrap_or(true));
+        tile.shared.retain_mut(|(v, _)| match number[*v as usize] {
+            Some(new) => {
+                *v = new;
+                true
+            }
+            None => false,
+        });
+    }
 }
 
 #[cfg(test)]
 mod tests {
+    use zeroset::mesh::Mesh;
+
     use super::*;
 
     fn strip(triangles: u32, shared: Vec<(u32, [u64; 3])>) -> TileMesh {

@@ -2,7 +2,7 @@
 
 use std::num::NonZeroUsize;
 
-use zeroset::cloud::{Cloud, Filter, NOISE_CLASSES, isolated_points, retain};
+use zeroset::cloud::{Cloud, Filter, isolated_points, retain};
 use zeroset::monitor::Monitor;
 use zeroset_io::{NO_CLASS, ReadReport, Source, shown};
 
@@ -59,13 +59,8 @@ pub(crate) fn filter(args: &InputArgs) -> Filter {
 
 fn filters(args: &InputArgs) -> Filters {
     let classes = args.classes.as_ref().map(|c| c.0.clone());
-    let exclude = args.exclude.as_ref().map_or_else(
-        || {
-            let asked_for = |class: &u8| classes.as_ref().is_some_and(|only| only.contains(class));
-            NOISE_CLASSES.into_iter().filter(|class| !asked_for(class)).collect()
-        },
-        |c| c.0.clone(),
-    );
+    let exclude =
+        args.exclude.as_ref().map_or_else(|| Filter::excluded_by_default(classes.as_deref()), |c| c.0.clone());
     let open = |v: f64| v.is_finite().then_some(v);
     Filters {
         bounds: args.bounds.map(|b| b.0.map(|side| side.map(open))),

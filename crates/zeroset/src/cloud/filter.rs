@@ -29,6 +29,13 @@ pub struct FilterReport {
 }
 
 impl Filter {
+    /// The classes that are left out where the user names none: noise, unless it is asked for.
+    #[must_use]
+    pub fn excluded_by_default(only_classes: Option<&[u8]>) -> Vec<u8> {
+        let asked_for = |class: &u8| only_classes.is_some_and(|only| only.contains(class));
+        NOISE_CLASSES.into_iter().filter(|class| !asked_for(class)).collect()
+    }
+
     /// Drops the points that the filter leaves out. Points keep their order.
     #[must_use]
     pub fn apply(&self, cloud: &mut Cloud) -> FilterReport {

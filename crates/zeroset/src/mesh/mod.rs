@@ -16,7 +16,7 @@ mod tests;
 
 pub use cluster::{Clustered, cluster};
 pub use compare::{Agreement, CompareError, CompareParams, CompareReport, Distances, OneWay, Role, compare};
-pub use components::{DroppedComponents, drop_small_components};
+pub use components::{Components, DroppedComponents, drop_small_components};
 pub(crate) use creases::{Crease, crease_edges};
 pub use creases::{SHARP_ANGLE, creases};
 pub(crate) use edges::Edges;

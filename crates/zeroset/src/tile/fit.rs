@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::layout::Layout;
+use super::layout::{HALO, Layout};
 use super::{TileId, TilePlan};
 use crate::cloud::Cloud;
 use crate::constraint::{Constraints, Local};
@@ -122,7 +122,7 @@ impl TilePlan {
     /// The box of a tile and its halo, as far as there are points anywhere, in the frame of the fit.
     fn reached(&self, layout: &Layout, tile: TileId) -> [Vec3; 2] {
         let (low, high) = crate::domain::bounds(self.bounds.into_iter().map(|corner| layout.frame.enter(corner)));
-        let [first, last] = layout.rectangle(tile, 32.0);
+        let [first, last] = layout.rectangle(tile, HALO[0].into());
         [
             [low[0].max(first[0]).min(high[0]), low[1].max(first[1]).min(high[1]), low[2]],
             [high[0].min(last[0]).max(low[0]), high[1].min(last[1]).max(low[1]), high[2]],

@@ -11,7 +11,7 @@ use crate::reconstruct::ReconstructError;
 const MOST_COARSE_NODES: u32 = 256;
 /// How far beyond its own nodes a tile is fitted, in nodes of the level: on the finest level, on the one before, and on all others. What is farther is
 /// felt as the coarser level left it.
-const HALO: [u32; 3] = [32, 24, 16];
+pub(super) const HALO: [u32; 3] = [32, 24, 16];
 /// How far beyond a face neighbours have a say in F, in nodes.
 pub(super) const BLEND: u32 = 8;
 /// How far beyond its own nodes a tile is extracted, in nodes, so that what is beside a face is seen from both sides.
@@ -34,7 +34,7 @@ pub(super) struct Layout {
 }
 
 /// The finest level that is solved for the whole: the finest of at most [`MOST_COARSE_NODES`] across, but at least one is left for tiles.
-pub(super) fn coarse_level(finest: u32, width: u32) -> u32 {
+fn coarse_level(finest: u32, width: u32) -> u32 {
     (0..finest).rev().find(|&level| width >> (finest - level) <= MOST_COARSE_NODES).unwrap_or(0)
 }
 

@@ -157,18 +157,12 @@ impl TilePlan {
     /// The coarsest cells that [`Self::thin`] is asked for, as a power of two of the finest.
     #[must_use]
     pub fn coarsest_thinning(&self) -> u32 {
-        (self.report.levels - 1).saturating_sub(super::layout::coarse_level(self.report.levels - 1, self.width()))
+        Layout::new(self).map_or(0, |layout| layout.lattice.finest - layout.coarse)
     }
 
     /// The thinning of the points that [`Self::coarse`] takes.
     #[must_use]
     pub fn coarse_thinning(&self) -> u32 {
         self.coarsest_thinning().saturating_sub(1)
-    }
-
-    /// Nodes of the finest level along the longest side.
-    fn width(&self) -> u32 {
-        Layout::new(self)
-            .map_or(0, |layout| layout.lattice.nodes_at(layout.lattice.finest).into_iter().max().unwrap_or(0))
     }
 }
