@@ -78,10 +78,12 @@ impl Header {
             for value in &mut six {
                 *value = rest.f64()?;
             }
-            let mut bounds = [[0.0; 3]; 2];
-            for axis in 0..3 {
-                [bounds[1][axis], bounds[0][axis]] = [rest.f64()?, rest.f64()?];
+            // The highest comes before the lowest of each axis.
+            let (mut low, mut high) = ([0.0; 3], [0.0; 3]);
+            for (low, high) in low.iter_mut().zip(&mut high) {
+                (*high, *low) = (rest.f64()?, rest.f64()?);
             }
+            let bounds = [low, high];
             Some((
                 system,
                 software,
