@@ -155,7 +155,7 @@ impl TileFolder {
 
     /// The squares of tiles that are shown as one, level by level: each with its parts.
     #[pyo3(signature = () -> "list[list[tuple[tuple[int, int, int], list[tuple[int, int, int]]]]]")]
-    fn levels(&self, py: Python<'_>) -> PyResult<Vec<Vec<(Square, Vec<Square>)>>> {
+    fn levels(&self, py: Python<'_>) -> PyResult<Vec<Vec<SquareOf>>> {
         let levels = self.planned(py, |_, _, plan, _| Ok(plan.levels()))?;
         let plain = |id: NodeId| (id.level, id.x, id.y);
         let node = |node: Node| (plain(node.id), node.children.into_iter().map(plain).collect());
@@ -214,6 +214,9 @@ type Tile = (i32, i32);
 
 /// Level, column and row of a square of tiles.
 type Square = (u32, i32, i32);
+
+/// A square and what it is made of.
+type SquareOf = (Square, Vec<Square>);
 
 fn id((x, y): Tile) -> TileId {
     TileId { x, y }

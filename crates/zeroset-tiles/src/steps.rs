@@ -176,16 +176,16 @@ impl Folder {
         }
         create(&self.work().join("mesh"))?;
         let mut mesh = TileMesh { mesh: Mesh::default(), shared: Vec::new() };
-        if let Some((fit, strips)) = self.read_fit(plan, tile)? {
+        if let Some(found) = self.read_fit(plan, tile)? {
             let load = |tile, thinning| self.load(sorted, tile, thinning);
-            mesh = plan.mesh(tile, &fit, &borrowed(&strips), load, monitor)?.0;
+            mesh = plan.mesh(tile, &found.fit, &found.strips(), load, monitor)?.0;
         }
         write_tile_mesh(&self.mesh(tile), &mesh)?;
         write_json(&self.pieces(tile), &pieces(&mesh))
     }
 
     /// What was fitted to a tile, and the strips around it; `None` if there was nothing to fit.
-    fn read_fit(&self, plan: &TilePlan, tile: TileId) -> Result<Option<(TileFit, Vec<(TileId, Strip)>)>, TilesError> {
+    fn read_fit(&self, plan: &TilePlan, tile: TileId) -> Result<Option<Fit>, TilesError> {
         if !self.has_fit(tile)? {
             return Ok(None);
         }
@@ -198,7 +198,7 @@ impl Folder {
         let path = self.fitted(tile);
         let Solid::Fitted(fitted) = read_model(&path)?.solid else { return Err(TilesError::damaged(&path)) };
         let fit = TileFit::new(Arc::try_unwrap(fitted).map_err(|_| TilesError::damaged(&path))?);
-        Ok(Some((fit, strips)))
+        Ok(Some(Fit { fit, strips }))
     }
 
     /// The model of a tile, the same as its neighbours' where they meet; `None` if there was nothing to fit. It and its neighbours must be fitted.
@@ -206,8 +206,8 @@ impl Folder {
     /// # Errors
     /// If a file cannot be read.
     pub fn model(&self, sorted: &Sorted, plan: &TilePlan, tile: TileId) -> Result<Option<Model>, TilesError> {
-        let Some((fit, strips)) = self.read_fit(plan, tile)? else { return Ok(None) };
-        Ok(Some(model_of(plan.model(tile, &fit, &borrowed(&strips))?, sorted)))
+        let Some(found) = self.read_fit(plan, tile)? else { return Ok(None) };
+        Ok(Some(model_of(plan.model(tile, &found.fit, &found.strips())?, sorted)))
     }
 
     /// Simplifies the surface of a tile without small pieces, if the plan asks for it. It and its neighbours must be extracted.
@@ -279,8 +279,16 @@ fn model_of(fitted: Fitted, sorted: &Sorted) -> Model {
     }
 }
 
-fn borrowed(strips: &[(TileId, Strip)]) -> Vec<(TileId, &Strip)> {
-    strips.iter().map(|(id, strip)| (*id, strip)).collect()
+/// What was fitted to a tile, and the strips of those around it.
+struct Fit {
+    fit: TileFit,
+    strips: Vec<(TileId, Strip)>,
+}
+
+impl Fit {
+    fn strips(&self) -> Vec<(TileId, &Strip)> {
+        self.strips.iter().map(|(id, strip)| (*id, strip)).collect()
+    }
 }
 
 fn common_divisor(a: usize, b: usize) -> usize {

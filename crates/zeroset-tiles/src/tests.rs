@@ -240,7 +240,8 @@ fn levels_replace_one_another_without_a_crack_and_keep_their_error() {
 
     // All of one level, some refined beside some that are not, and every second all the way down.
     let west = |b: &Branch| b.volume[0] < 0.0;
-    let rules: [&dyn Fn(u32, &Branch) -> bool; 6] = [
+    type Rule<'a> = &'a dyn Fn(u32, &Branch) -> bool;
+    let rules: [Rule<'_>; 6] = [
         &|depth, _| depth < 1,
         &|depth, _| depth < 2,
         &|_, _| true,

@@ -262,7 +262,7 @@ fn constraints_are_held_against_the_points_of_tiles_whatever_else_is_given() {
     let folder = folder();
     city(folder.path());
     std::fs::write(folder.path().join("far.obj"), "v 900 900 0\nv 901 900 0\nv 901 901 0\nf 1 2 3\n").unwrap();
-    std::fs::write(folder.path().join("near.obj"), "v 0 0 .5\nv .1 0 .5\nv .1 .1 .5\nf 1 2 3\n").unwrap();
+    std::fs::write(folder.path().join("near.obj"), "v 0 0 .05\nv .1 0 .05\nv .1 .1 .05\nf 1 2 3\n").unwrap();
     for (name, resolution) in [("free", ""), ("given", "--resolution 0.008")] {
         let run = format!("reconstruct a.xyz b.xyz --tile 1.6 {resolution} --quality draft --scene airborne -q");
         let said = line(folder.path(), &format!("{run} -o far/ --constraints far.obj")).failed("a.xyz");
@@ -278,15 +278,15 @@ fn constraints_are_held_against_the_points_of_tiles_whatever_else_is_given() {
 fn ground_that_does_not_fit_into_memory_is_made_in_tiles() {
     let folder = folder();
     city(folder.path());
-    let run = "reconstruct a.xyz b.xyz --resolution 0.0015 --quality draft --scene airborne";
-    let said = line(folder.path(), &format!("{run} -o small.ply --memory 400MB --report small.json")).ok().stderr;
-    assert!(said.contains("more memory than there is") && said.contains(" tiles of 0.5 "), "{said}");
+    let run = "reconstruct a.xyz b.xyz --resolution 0.004 --quality draft --scene airborne";
+    let said = line(folder.path(), &format!("{run} -o small.ply --memory 90MB --report small.json")).ok().stderr;
+    assert!(said.contains("more memory than there is") && said.contains(" tiles of 0."), "{said}");
     let report: Value = serde_json::from_slice(&std::fs::read(folder.path().join("small.json")).unwrap()).unwrap();
     assert!(report["plan"]["tiles"].as_array().unwrap().len() > 1, "{report}");
     assert!(!folder.path().join("small.ply.tiles").exists());
     // No body is cut up.
-    let said = line(folder.path(), &format!("{} -o body.ply --memory 400MB", run.replace("airborne", "object")));
-    assert!(said.failed("a.xyz").contains("a resolution of 0.0015 needs about"));
+    let said = line(folder.path(), &format!("{} -o body.ply --memory 90MB", run.replace("airborne", "object")));
+    assert!(said.failed("a.xyz").contains("a resolution of 0.004 needs about"));
     assert!(!folder.path().join("body.ply.tiles").exists());
 }
 

@@ -57,7 +57,7 @@ use proj4rs::Proj;
 use proj4rs::transform::transform;
 use rayon::prelude::*;
 
-use crate::epsg;
+use crate::{LinearUnit, epsg};
 use definition::Definition;
 pub use frame::Frame;
 
@@ -179,6 +179,12 @@ impl Globe {
     #[must_use]
     pub fn code(&self) -> u32 {
         self.code
+    }
+
+    /// The unit of x and y; `None` if they are degrees, or in a unit without a name here.
+    #[must_use]
+    pub fn unit(&self) -> Option<LinearUnit> {
+        if self.system.is_latlong() { None } else { LinearUnit::from_metres(self.system.to_meter()) }
     }
 
     /// Where a position lies, in earth-centred, earth-fixed metres of WGS 84.

@@ -193,7 +193,7 @@ fn make(
     )
 }
 
-/// Sorts the points and decides about everything. Tiles that turn out too wide, where the user left their side open, are made narrower once.
+/// Sorts the points and decides about everything. Tiles that turn out too wide or too narrow, where the user left their side open, are made anew once.
 fn planned(
     args: &ReconstructArgs,
     params: &ReconstructParams,
@@ -214,7 +214,15 @@ fn planned(
         Some(side) => side,
         None => size::estimated(args, params, threads)?,
     };
-    let (sorted, plan) = once(first)?;
+    let (sorted, plan) = match once(first) {
+        Err(CliError::Tiles(TilesError::Reconstruct(ReconstructError::NarrowTiles { least, .. })))
+            if side.is_none() =>
+        {
+            folder.forget_points()?;
+            return once(1.25 * least);
+        }
+        made => made?,
+    };
     if side.is_some() {
         return Ok((sorted, plan));
     }

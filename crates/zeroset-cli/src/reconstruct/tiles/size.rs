@@ -13,8 +13,8 @@ use crate::error::CliError;
 
 /// Bytes of a point that is read with all others, before anything is done with it.
 const BYTES_A_POINT: f64 = 56.0;
-/// The fewest cells along a tile.
-const LEAST: f64 = 128.0;
+/// The fewest cells along a tile that is chosen for the user: somewhat more than are needed, as the cells of an estimate may be too small.
+const LEAST: f64 = 160.0;
 /// Cells in units of the spacing of the points, where the user says nothing.
 const SPACINGS: f64 = 1.5;
 
@@ -86,8 +86,11 @@ pub(super) fn widest(
     let allowed = params.memory as f64;
     let wanted = args.tiles.jobs.map_or(threads, usize::from);
     let fewest = if args.tiles.jobs.is_some() { wanted } else { 1 };
-    let side = (fewest..=wanted).rev().find_map(|jobs| memory.widest(allowed / jobs as f64));
-    side.map(round_down).ok_or_else(|| too_large(fewest, LEAST * memory.resolution, memory, allowed))
+    let least = LEAST * memory.resolution;
+    let widest = |jobs: usize| memory.widest(allowed / jobs as f64).filter(|side| *side >= least);
+    let side = (fewest..=wanted).rev().find_map(widest);
+    let round = |side| Some(round_down(side)).filter(|round| *round >= least).unwrap_or(side);
+    side.map(round).ok_or_else(|| too_large(fewest, least, memory, allowed))
 }
 
 /// How many tiles at a time.

@@ -2,6 +2,7 @@
 
 use super::header::VariableRecord;
 use crate::cloud::report::LinearUnit;
+use crate::globe::Globe;
 use crate::input::Fields;
 
 /// What the records tell.
@@ -85,6 +86,8 @@ fn from_keys(keys: &[u8], doubles: &[u8]) -> System {
         Some(vertical) => format!("EPSG:{horizontal}+{vertical}"),
         None => format!("EPSG:{horizontal}"),
     });
+    // Writers may leave it to the code to tell.
+    let unit = unit.or_else(|| Globe::of(text.as_deref()?).ok()?.unit());
     System { text, unit, note }
 }
 
@@ -149,6 +152,9 @@ mod tests {
         let projected = keys(&[[1024, 0, 1, 1], [3072, 0, 1, 28992], [3076, 0, 1, 9001], [4096, 0, 1, 5709]]);
         let system = from_keys(&projected, &[]);
         assert_eq!((system.text.as_deref(), system.unit), (Some("EPSG:28992+5709"), Some(LinearUnit::Metre)));
+        for (code, unit) in [(28992, LinearUnit::Metre), (2994, LinearUnit::Foot), (2263, LinearUnit::UsSurveyFoot)] {
+            assert_eq!(from_keys(&keys(&[[3072, 0, 1, code]]), &[]).unit, Some(unit), "{code}");
+        }
         let size = keys(&[[3072, 0, 1, 32767], [3077, 34736, 1, 1]]);
         let doubles: Vec<u8> = [0.0_f64, 0.3048].iter().flat_map(|v| v.to_le_bytes()).collect();
         let system = from_keys(&size, &doubles);
