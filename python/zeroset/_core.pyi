@@ -160,9 +160,9 @@ class TileFolder:
         """
         Fits a tile. The coarse levels must be there.
         """
-    def is_sorted(self, /, input: "int") -> "bool":
+    def is_sorted(self, /, input: "int", side: "float") -> "bool":
         """
-        Whether an input is sorted.
+        Whether an input is sorted into tiles of a side.
         """
     def level(self, /, square: "tuple[int, int, int]") -> "dict[str, Any] | None":
         """

@@ -26,9 +26,6 @@ use crate::progress::{Progress, with_progress};
 use crate::report::{OutputReport, Report, Seconds};
 use crate::{memory, threads};
 
-/// What is said before ground is made in tiles without being asked to.
-const IN_TILES: &str = "note: the whole takes more memory than there is, so it is made in tiles";
-
 pub(crate) fn run(args: &ReconstructArgs) -> Result<(), CliError> {
     let start = Instant::now();
     let console = Console::of(&args.run);
@@ -60,10 +57,9 @@ pub(crate) fn run(args: &ReconstructArgs) -> Result<(), CliError> {
     if tiles::are_called_for(args, &plan, &params) {
         let refused = plan.err();
         drop(input);
-        console.say(IN_TILES);
         return match (tiles::reconstruct(args, &of_tiles, console), refused) {
-            // What is no ground has to fit into memory.
-            (Err(CliError::Reconstruct { source: ReconstructError::TilesOfBody, .. }), Some(refused)) => Err(refused),
+            // What is no ground has to fit into memory, and so has a tile.
+            (Err(error), Some(refused)) if tiles::are_none(&error) => Err(refused),
             (made, _) => made,
         };
     }

@@ -278,15 +278,15 @@ fn constraints_are_held_against_the_points_of_tiles_whatever_else_is_given() {
 fn ground_that_does_not_fit_into_memory_is_made_in_tiles() {
     let folder = folder();
     city(folder.path());
-    let run = "reconstruct a.xyz b.xyz --resolution 0.004 --quality draft --scene airborne";
+    let run = "reconstruct a.xyz b.xyz --resolution 0.0025 --quality draft --scene airborne";
     let said = line(folder.path(), &format!("{run} -o small.ply --memory 90MB --report small.json")).ok().stderr;
-    assert!(said.contains("more memory than there is") && said.contains(" tiles of 0."), "{said}");
+    assert!(said.contains("more memory than there is") && said.contains(" tiles of 0.5 "), "{said}");
     let report: Value = serde_json::from_slice(&std::fs::read(folder.path().join("small.json")).unwrap()).unwrap();
     assert!(report["plan"]["tiles"].as_array().unwrap().len() > 1, "{report}");
     assert!(!folder.path().join("small.ply.tiles").exists());
     // No body is cut up.
     let said = line(folder.path(), &format!("{} -o body.ply --memory 90MB", run.replace("airborne", "object")));
-    assert!(said.failed("a.xyz").contains("a resolution of 0.004 needs about"));
+    assert!(said.failed("a.xyz").contains("a resolution of 0.0025 needs about"));
     assert!(!folder.path().join("body.ply.tiles").exists());
 }
 
@@ -294,8 +294,8 @@ fn ground_that_does_not_fit_into_memory_is_made_in_tiles() {
 #[test]
 fn tiles_are_as_wide_as_memory_allows() {
     let folder = folder();
-    line(folder.path(), "sample airborne-city -o city.las --points 40000").ok();
-    let sides: Vec<f64> = ["10GB", "60MB"]
+    line(folder.path(), "sample airborne-city -o city.las --points 120000").ok();
+    let sides: Vec<f64> = ["10GB", "100MB"]
         .into_iter()
         .map(|memory| {
             let run = format!("reconstruct city.las -o {memory}/ --memory {memory} --quality draft --report - -q");
@@ -314,9 +314,9 @@ fn tiles_are_as_wide_as_memory_allows() {
 fn the_command_of_the_readme_makes_a_city() {
     let folder = folder();
     let scene = Scene::new(SceneKind::AirborneCity, 0);
-    let points = scene.points(60_000, 0.0003, 1).points;
+    let points = scene.points(100_000, 0.0003, 1).points;
     std::fs::create_dir(folder.path().join("city")).unwrap();
-    for (name, range) in [("east.laz", 0..30_000), ("west.laz", 30_000..60_000)] {
+    for (name, range) in [("east.laz", 0..50_000), ("west.laz", 50_000..100_000)] {
         let world = |p: &[f64; 3]| [84_800.0 + 300.0 * p[0], 447_400.0 + 300.0 * p[1], 300.0 * p[2]];
         let own = points[range].iter().map(world).collect();
         let cloud = Cloud { crs: Some("EPSG:28992+5709".into()), ..Cloud::from_world(own) };
@@ -326,7 +326,7 @@ fn the_command_of_the_readme_makes_a_city() {
     let command = readme.lines().find_map(|line| line.strip_prefix("zeroset reconstruct city/")).unwrap();
     let command = format!("reconstruct city/{command}").replace("city/*.laz", "city/east.laz city/west.laz");
     let said = line(folder.path(), &command).ok().stderr;
-    assert!(said.contains(" tiles of 250 from 60,000 points"), "{said}");
+    assert!(said.contains(" tiles of 250 from 100,000 points"), "{said}");
     let made = files(&folder.path().join("city/tiles"));
     let tileset: Value = serde_json::from_slice(&made["tileset.json"]).unwrap();
     assert!(said.contains("stands on the globe"), "{said}");

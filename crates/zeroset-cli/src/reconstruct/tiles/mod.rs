@@ -95,6 +95,17 @@ pub(super) fn are_needed(args: &ReconstructArgs, params: &ReconstructParams) -> 
     are_possible(args) && size::points_exceed(args, params.memory)
 }
 
+/// Whether tiles were not possible, after all.
+pub(super) fn are_none(error: &CliError) -> bool {
+    match error {
+        CliError::TilesTooLarge { .. } => true,
+        CliError::Reconstruct { source, .. } => {
+            matches!(source, ReconstructError::TilesOfBody | ReconstructError::NarrowTiles { .. })
+        }
+        _ => false,
+    }
+}
+
 /// Does what was asked for, tile by tile.
 pub(super) fn reconstruct(
     args: &ReconstructArgs,
@@ -171,6 +182,9 @@ fn make(
         significant(plan.report.resolution, 4),
     );
     let output = shown(output);
+    if !are_asked_for(args) {
+        console.say("note: the whole takes more memory than there is, so it was made in tiles");
+    }
     console.say(&if was_finished {
         format!("{output}: {what} are there already; remove the folder to make them anew")
     } else {
