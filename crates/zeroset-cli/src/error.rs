@@ -10,6 +10,7 @@ use zeroset::model::ModelError;
 use zeroset::reconstruct::ReconstructError;
 use zeroset_io::{IoError, SolidError, shown};
 use zeroset_tiles::TilesError;
+use zeroset_view::render::RenderError;
 
 /// Why a command failed. The message names the file and the remedy.
 #[derive(Debug, thiserror::Error)]
@@ -107,6 +108,22 @@ pub(crate) enum CliError {
         input: PathBuf,
         /// Why.
         source: Fit2dError,
+    },
+    /// A picture that cannot be drawn.
+    #[error("{inputs}: {source}")]
+    Render {
+        /// The inputs, in words.
+        inputs: String,
+        /// Why.
+        source: RenderError,
+    },
+    /// Colours that tell of what is not there.
+    #[error("{inputs}: there are {what}; choose another --color")]
+    NothingToColor {
+        /// The inputs, in words.
+        inputs: String,
+        /// What is not there.
+        what: &'static str,
     },
     /// A mesh without area.
     #[error("{}: there is no surface in it ({faces} triangles, no area); give a mesh", shown(path))]

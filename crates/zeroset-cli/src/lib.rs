@@ -26,6 +26,7 @@ pub mod memory;
 mod model;
 mod progress;
 mod reconstruct;
+mod render;
 mod report;
 mod sample;
 mod simplify;
@@ -101,6 +102,7 @@ fn run(command: Command) -> Result<(), CliError> {
         Command::Sample(args) => sample::run(&args),
         Command::Simplify(args) => simplify::run(&args),
         Command::Compare(args) => compare::run(&args),
+        Command::Render(args) => render::run(&args),
         Command::Info(args) => info::run(&args),
         Command::Completions(args) => completions::run(&args),
     }

@@ -9,6 +9,7 @@
 //! | sections | | SVG, DXF, GeoJSON |
 //! | points with values of F | any format of clouds, NPY | PLY, CSV, NPY |
 //! | rasters | | GeoTIFF |
+//! | pictures | | PNG |
 //! | constraints | OBJ, GeoJSON, DXF, and features as JSON | |
 //! | data in the plane | JSON, CSV | JSON |
 //! | solids | expressions, TOML | |
@@ -49,6 +50,7 @@ pub mod mesh;
 pub mod model;
 mod number;
 mod output;
+pub mod picture;
 pub mod planar;
 mod ply;
 pub mod raster;
@@ -71,6 +73,7 @@ pub use globe::{Frame, Globe, GlobeError};
 pub use mesh::{WriteOptions, WriteReport, read_mesh, read_mesh_bytes, write_mesh};
 pub use model::{check_model_suffix, is_model, read_model, read_model_bytes, write_model};
 pub use output::{abandon_writes, check_writable, write_atomically};
+pub use picture::{PictureFormat, write_picture};
 pub use planar::{PlanarData, PlanarFormat, PlanarResult, planar_json, read_planar, read_planar_bytes};
 pub use raster::{Raster, RasterFormat, write_raster};
 pub use section::{Section, SectionFormat, SectionLevel, SectionLine, SectionPlane, plane_frame, write_section};

@@ -28,6 +28,7 @@ mod pieces;
 mod placement;
 mod points;
 mod run;
+mod sample;
 mod sort;
 mod steps;
 mod tileset;

@@ -43,9 +43,6 @@ impl TileFormat {
     }
 }
 
-/// Spacing, noise and scene are measured on tiles with so many points in all, or on all tiles.
-const SAMPLE: usize = 2_000_000;
-
 impl Folder {
     /// Resolves every default against the points, or reads the plan that is there.
     ///
@@ -56,16 +53,7 @@ impl Folder {
             return Ok(plan);
         }
         let offset = sorted.offset();
-        let mut sample = Cloud { world_from_local: offset, crs: sorted.crs.clone(), ..Cloud::default() };
-        let n = sorted.tiles.len();
-        // Tiles from all over: every so many, round and round.
-        let step = (1..n).find(|&s| s * 1000 > n * 618 && common_divisor(s, n) == 1).unwrap_or(1);
-        for i in 0..n {
-            if sample.len() >= SAMPLE {
-                break;
-            }
-            sample.append(self.load(sorted, sorted.tiles[i * step % n].id, 0)?);
-        }
+        let sample = self.sample(sorted, params.up)?;
         let measured = Measurement {
             points: usize::try_from(sorted.points).unwrap_or(usize::MAX),
             bounds: sorted.bounds.map(|corner| std::array::from_fn(|a| corner[a] - offset[a])),
@@ -289,8 +277,4 @@ impl Fit {
     fn strips(&self) -> Vec<(TileId, &Strip)> {
         self.strips.iter().map(|(id, strip)| (*id, strip)).collect()
     }
-}
-
-fn common_divisor(a: usize, b: usize) -> usize {
-    if b == 0 { a } else { common_divisor(b, a % b) }
 }

@@ -4,6 +4,7 @@ mod compare;
 mod features;
 mod fit2d;
 mod model;
+mod render;
 mod shared;
 mod simplify;
 mod tiles;
@@ -20,10 +21,11 @@ pub use compare::CompareArgs;
 pub use features::{FeaturesArgs, PostureChoice};
 pub use fit2d::{BasisChoice, BranchesChoice, DomainChoice, Fit2dArgs, NormalizationChoice, SolverChoice};
 pub use model::{EditArgs, EvalArgs, FitArgs, MeshArgs, RasterArgs, SliceArgs, SurfaceArgs, VolumeArgs};
+pub use render::{ColorChoice, ColorMapChoice, RenderArgs};
 pub use shared::{BriefRunArgs, InputArgs, RunArgs, SceneArgs, SceneChoice, SimplifyTarget, UpChoice};
 pub use simplify::SimplifyArgs;
 pub use tiles::{TileArgs, TileFormatChoice};
-pub use values::{Bounds, Classes, Length, OrAuto, OrOff, Plane, Rectangle};
+pub use values::{Backdrop, Bounds, Classes, Length, OrAuto, OrOff, Plane, Rectangle, Viewpoint};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -100,6 +102,8 @@ pub enum Command {
     Simplify(SimplifyArgs),
     /// Measure how well a mesh, or features, agree with the truth.
     Compare(CompareArgs),
+    /// Draw clouds, meshes, models and features as a picture.
+    Render(Box<RenderArgs>),
     /// Show what a cloud, a mesh or a model holds.
     Info(InfoArgs),
     /// Print completions for a shell.

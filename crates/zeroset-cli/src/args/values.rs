@@ -3,6 +3,7 @@
 use std::num::NonZeroUsize;
 
 use zeroset_io::LinearUnit;
+use zeroset_view::render::{Background, Direction};
 
 /// ASPRS classes.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -36,6 +37,14 @@ pub struct Rectangle {
     /// Upper corner, above the lower one on both axes.
     pub high: [f64; 2],
 }
+
+/// Where a picture is seen from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Viewpoint(pub Direction);
+
+/// What is behind a picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Backdrop(pub Background);
 
 /// A value, or `off`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -181,6 +190,73 @@ pub(super) fn rectangle(text: &str) -> Result<Rectangle, String> {
     } else {
         Err("xmax must be greater than xmin, and ymax than ymin; the order is xmin,ymin,xmax,ymax".into())
     }
+}
+
+/// A preset, an azimuth and an elevation in degrees, or two positions.
+pub(super) fn viewpoint(text: &str) -> Result<Viewpoint, String> {
+    let preset = match text.trim().to_ascii_lowercase().as_str() {
+        "iso" => Some(Direction::Iso),
+        "top" => Some(Direction::Top),
+        "bottom" => Some(Direction::Bottom),
+        "front" => Some(Direction::Front),
+        "back" => Some(Direction::Back),
+        "left" => Some(Direction::Left),
+        "right" => Some(Direction::Right),
+        _ => None,
+    };
+    if let Some(direction) = preset {
+        return Ok(Viewpoint(direction));
+    }
+    let wanted = "iso, top, bottom, front, back, left, right, azimuth,elevation in degrees, or x,y,z,x,y,z of the camera and of what it looks at";
+    if !text.contains(',') {
+        return Err(format!("`{text}` is none of {wanted}"));
+    }
+    match text.split(',').map(number).collect::<Result<Vec<f64>, String>>()?[..] {
+        [azimuth, elevation] if (-90.0..=90.0).contains(&elevation) => {
+            Ok(Viewpoint(Direction::From { azimuth: azimuth.to_radians(), elevation: elevation.to_radians() }))
+        }
+        [_, elevation] => Err(format!("an elevation of {elevation} is not possible; give -90 to 90")),
+        [ex, ey, ez, x, y, z] => Ok(Viewpoint(Direction::Placed { eye: [ex, ey, ez], target: [x, y, z] })),
+        ref others => Err(format!("{} numbers are given; wanted is one of {wanted}", others.len())),
+    }
+}
+
+/// `1600x1200`.
+pub(super) fn pixels(text: &str) -> Result<[u32; 2], String> {
+    let sides = text.trim().split_once(['x', 'X']).map(|(width, height)| [width, height].map(|s| s.trim().parse()));
+    match sides {
+        Some([Ok(width), Ok(height)]) => Ok([width, height]),
+        _ => Err(format!("`{text}` is no size such as 1600x1200")),
+    }
+}
+
+/// `white`, `black`, `transparent`, `#rrggbb`.
+pub(super) fn backdrop(text: &str) -> Result<Backdrop, String> {
+    let plain = |color| Ok(Backdrop(Background::Plain(color)));
+    match text.trim().to_ascii_lowercase().as_str() {
+        "transparent" => Ok(Backdrop(Background::Transparent)),
+        "white" => plain([255; 3]),
+        "black" => plain([0; 3]),
+        other => {
+            let digits = other.strip_prefix('#').filter(|d| d.len() == 6 && d.bytes().all(|b| b.is_ascii_hexdigit()));
+            let value = digits.and_then(|d| u32::from_str_radix(d, 16).ok());
+            let value = value.ok_or_else(|| format!("`{text}` is none of white, black, transparent and #rrggbb"))?;
+            let [_, r, g, b] = value.to_be_bytes();
+            plain([r, g, b])
+        }
+    }
+}
+
+/// `LOW,HIGH`.
+pub(super) fn range(text: &str) -> Result<[f64; 2], String> {
+    match text.split(',').map(number).collect::<Result<Vec<f64>, String>>()?[..] {
+        [low, high] if low < high => Ok([low, high]),
+        _ => Err("two numbers are needed, the lower one first".into()),
+    }
+}
+
+pub(super) fn angle_of_view(text: &str) -> Result<f64, String> {
+    positive(text).and_then(|v| if v < 170.0 { Ok(v) } else { Err("it must be less than 170".into()) })
 }
 
 pub(super) fn outliers(text: &str) -> Result<OrOff<NonZeroUsize>, String> {

@@ -2,15 +2,13 @@
 
 mod model;
 
-use std::fs::File;
-use std::io::Read;
 use std::path::Path;
 
 use serde::Serialize;
 use zeroset::cloud::{Cloud, Spacing};
-use zeroset::mesh::{Mesh, Topology, topology};
+use zeroset::mesh::{Topology, topology};
 use zeroset_io::solid::MODEL_SUFFIX;
-use zeroset_io::{CloudFormat, IoError, LinearUnit, MeshFormat, ReadReport, is_model, read_cloud, read_mesh, shown};
+use zeroset_io::{LinearUnit, ReadReport, is_model, shown};
 
 use self::model::ModelInfo;
 use crate::args::InfoArgs;
@@ -18,11 +16,9 @@ use crate::asprs::class_name;
 use crate::compare::topologies;
 use crate::console::Console;
 use crate::error::CliError;
+use crate::input::{CloudOrMesh, cloud_or_mesh, read_cloud_or_mesh};
 use crate::report::to_json_line;
 use crate::table::{columns, count, decimals_for, pairs, position, significant};
-
-/// Bytes at the start of a PLY file in which its header is looked for.
-const LONGEST_HEADER: u64 = 1 << 16;
 
 pub(crate) fn run(args: &InfoArgs) -> Result<(), CliError> {
     for (i, path) in args.files.iter().enumerate() {
@@ -87,21 +83,18 @@ impl Info {
         if is_model(path) {
             return Ok(Self::Model(ModelInfo::read(path)?));
         }
-        let Some(format) = mesh_format(path)? else {
-            let file = read_cloud(path)?;
-            return Ok(Self::Cloud(CloudInfo::new(path, file.report.format.name(), &file.cloud, Some(file.report))));
+        let format = cloud_or_mesh(path, "cloud, mesh or model", &[MODEL_SUFFIX])?;
+        let (mesh, format) = match read_cloud_or_mesh(path, format)? {
+            CloudOrMesh::Cloud(cloud, format, report) => {
+                return Ok(Self::Cloud(CloudInfo::new(path, format, &cloud, report)));
+            }
+            CloudOrMesh::Mesh(mesh, format) => (mesh, format),
         };
-        let mesh = read_mesh(path)?;
-        if mesh.triangles.is_empty() {
-            let Mesh { world_from_local, vertices: points, attributes, crs, .. } = mesh;
-            let cloud = Cloud { world_from_local, points, attributes, crs };
-            return Ok(Self::Cloud(CloudInfo::new(path, format.name(), &cloud, None)));
-        }
         let topology = topology(&mesh).map_err(|source| CliError::Mesh { path: path.to_path_buf(), source })?;
         let o = mesh.world_from_local;
         Ok(Self::Mesh(MeshInfo {
             file: shown(path),
-            format: format.name(),
+            format,
             bounds: topology.bounds.map(|b| b.map(|p| std::array::from_fn(|a| p[a] + o[a]))),
             world_from_local: o,
             attributes: attribute_names(&mesh.attributes),
@@ -117,44 +110,6 @@ impl Info {
             Self::Model(model) => model.text(),
         }
     }
-}
-
-/// The mesh format to read a file in; `None` for clouds.
-fn mesh_format(path: &Path) -> Result<Option<MeshFormat>, CliError> {
-    let (cloud, mesh) = (CloudFormat::from_path(path), MeshFormat::from_path(path));
-    match (cloud, mesh) {
-        (Ok(_), Ok(mesh)) => Ok(has_faces(path)?.then_some(mesh)),
-        (Ok(_), Err(_)) => Ok(None),
-        (Err(_), Ok(mesh)) => Ok(Some(mesh)),
-        (Err(_), Err(mesh)) => Err(unknown(mesh).into()),
-    }
-}
-
-/// An unknown suffix, with those of both kinds to choose from.
-fn unknown(error: IoError) -> IoError {
-    let mut known: Vec<&str> = CloudFormat::KNOWN.iter().map(|(suffix, _)| *suffix).collect();
-    let meshes = MeshFormat::KNOWN.iter().map(|(suffix, _)| *suffix);
-    for suffix in meshes.chain([MODEL_SUFFIX]) {
-        if !known.contains(&suffix) {
-            known.push(suffix);
-        }
-    }
-    match error {
-        IoError::UnknownSuffix { path, suffix, .. } => {
-            IoError::UnknownSuffix { path, kind: "cloud, mesh or model", suffix, known: known.join(", ") }
-        }
-        other => other,
-    }
-}
-
-/// Whether the header of a PLY file promises faces.
-fn has_faces(path: &Path) -> Result<bool, CliError> {
-    let mut start = Vec::new();
-    let file = File::open(path).map_err(|source| IoError::from_system(path, source))?;
-    file.take(LONGEST_HEADER).read_to_end(&mut start).map_err(|source| IoError::from_system(path, source))?;
-    let lines = start.split(|b| *b == b'\n').map(<[u8]>::trim_ascii);
-    let mut header = lines.take_while(|line| *line != b"end_header");
-    Ok(header.any(|line| line.strip_prefix(b"element face ").is_some_and(|count| count.trim_ascii() != b"0")))
 }
 
 impl CloudInfo {

@@ -1,14 +1,16 @@
 //! The points that are used, and where they come from.
 
+mod kind;
 mod names;
 mod scene;
 mod select;
 
+pub(crate) use kind::{CloudOrMesh, cloud_or_mesh, read_cloud_or_mesh};
 pub(crate) use names::{
     check_inputs, check_is_file, check_output_and_report, check_outputs, is_stream, refuse_mesh_stream, refuse_same,
     shown_output,
 };
-pub(crate) use scene::{SURVEYED, announced, scene, up};
+pub(crate) use scene::{SURVEYED, announced, scene, up, up_axis};
 pub(crate) use select::filter;
 
 use std::time::Instant;

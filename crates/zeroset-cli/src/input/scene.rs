@@ -23,7 +23,11 @@ pub(crate) fn scene(args: &SceneArgs, formats: &[CloudFormat]) -> Option<Scene> 
 }
 
 pub(crate) fn up(args: &SceneArgs) -> Up {
-    match args.up {
+    up_axis(args.up)
+}
+
+pub(crate) fn up_axis(choice: UpChoice) -> Up {
+    match choice {
         UpChoice::X => Up::X,
         UpChoice::Y => Up::Y,
         UpChoice::Z => Up::Z,

@@ -10,6 +10,8 @@ pub(crate) mod volume;
 
 mod open;
 
+pub(crate) use open::open;
+
 use std::path::Path;
 
 use serde::Serialize;

@@ -25,8 +25,8 @@ struct Seen {
 }
 
 /// A solid, with what is told of it.
-pub(super) struct Opened {
-    pub(super) solid: Solid,
+pub(crate) struct Opened {
+    pub(crate) solid: Solid,
     /// The reference system of the first model that has one.
     pub(super) crs: Option<String>,
     /// What it is made of.
@@ -65,7 +65,7 @@ impl Opener {
 }
 
 /// Reads one solid.
-pub(super) fn open(text: &str) -> Result<Opened, CliError> {
+pub(crate) fn open(text: &str) -> Result<Opened, CliError> {
     let mut opener = Opener::new();
     let solid = opener.read(text)?;
     Ok(opener.finish(solid))

@@ -11,6 +11,7 @@ mod interrupt;
 mod measure;
 mod models;
 mod reconstruct;
+mod render;
 mod simplify;
 mod tiles;
 mod usage;

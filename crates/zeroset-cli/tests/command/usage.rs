@@ -9,7 +9,9 @@ use crate::common::{folder, line, run, zeroset};
 fn help_tells_what_there_is() {
     let folder = folder();
     let help = line(folder.path(), "--help").ok().stdout;
-    for command in ["reconstruct", "features", "fit2d", "sample", "simplify", "compare", "info", "completions"] {
+    for command in
+        ["reconstruct", "features", "fit2d", "sample", "simplify", "compare", "render", "info", "completions"]
+    {
         assert!(help.contains(command), "{command}");
         let own = line(folder.path(), &format!("{command} --help")).ok().stdout;
         assert!(own.contains("Usage: zeroset"), "{own}");
@@ -123,7 +125,8 @@ fn manual_pages_tell_every_option() {
     use clap::CommandFactory;
     let folder = folder();
     clap_mangen::generate_to(zeroset_cli::args::Args::command(), folder.path()).unwrap();
-    let commands = ["reconstruct", "features", "fit2d", "sample", "simplify", "compare", "info", "completions"];
+    let commands =
+        ["reconstruct", "features", "fit2d", "sample", "simplify", "compare", "render", "info", "completions"];
     for command in commands {
         let page = std::fs::read_to_string(folder.path().join(format!("zeroset-{command}.1"))).unwrap();
         assert!(page.contains(".SH SYNOPSIS"), "{page}");

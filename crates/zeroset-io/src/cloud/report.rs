@@ -39,6 +39,16 @@ impl LinearUnit {
         }
     }
 
+    /// The sign that stands behind numbers.
+    #[must_use]
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Self::Metre => "m",
+            Self::Foot => "ft",
+            Self::UsSurveyFoot => "us-ft",
+        }
+    }
+
     /// The unit of a given [`name`](Self::name).
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {

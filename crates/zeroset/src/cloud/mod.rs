@@ -5,6 +5,7 @@ mod noise;
 mod offset;
 mod outliers;
 mod spacing;
+mod variation;
 
 pub(crate) use filter::retain_items;
 pub use filter::{Filter, FilterReport, NOISE_CLASSES, retain};
@@ -12,6 +13,7 @@ pub use noise::noise;
 pub use offset::choose_offset;
 pub use outliers::isolated_points;
 pub use spacing::Spacing;
+pub use variation::surface_variation;
 
 /// Values measured at each point, or carried by each vertex of a mesh. Each present list has one entry per point.
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -4,6 +4,7 @@ mod cluster;
 mod compare;
 mod components;
 mod creases;
+mod curvature;
 mod edges;
 mod intersections;
 mod quadric;
@@ -19,6 +20,7 @@ pub use compare::{Agreement, CompareError, CompareParams, CompareReport, Distanc
 pub use components::{Components, DroppedComponents, drop_small_components};
 pub(crate) use creases::{Crease, crease_edges};
 pub use creases::{SHARP_ANGLE, creases};
+pub use curvature::mean_curvature;
 pub(crate) use edges::Edges;
 pub(crate) use intersections::{Facet, Projection, pairs_of as overlapping_pairs, projections};
 pub use intersections::{SelfIntersectionError, SelfIntersections, self_intersections};

@@ -1,0 +1,33 @@
+//! Arithmetic of positions.
+
+pub(crate) type Vec3 = [f64; 3];
+
+pub(crate) fn add(a: Vec3, b: Vec3) -> Vec3 {
+    std::array::from_fn(|i| a[i] + b[i])
+}
+
+pub(crate) fn sub(a: Vec3, b: Vec3) -> Vec3 {
+    std::array::from_fn(|i| a[i] - b[i])
+}
+
+pub(crate) fn scale(a: Vec3, factor: f64) -> Vec3 {
+    a.map(|c| c * factor)
+}
+
+pub(crate) fn dot(a: Vec3, b: Vec3) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+pub(crate) fn cross(a: Vec3, b: Vec3) -> Vec3 {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+pub(crate) fn norm(a: Vec3) -> f64 {
+    dot(a, a).sqrt()
+}
+
+/// `None` without a direction.
+pub(crate) fn normalized(a: Vec3) -> Option<Vec3> {
+    let length = norm(a);
+    (length > 0.0 && length.is_finite()).then(|| scale(a, 1.0 / length))
+}
