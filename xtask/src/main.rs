@@ -2,26 +2,31 @@
 //!
 //! | chore | does |
 //! |---|---|
+//! | `browser` | the tests of the page of `zeroset view`, in Chromium |
 //! | `check` | formatting, lints and documentation, all with warnings as errors |
 //! | `man DIR` | the manual pages of the command, written into a folder |
 //! | `python` | the Python package: built in place, its types checked, its tests run |
 //! | `stubs` | writes the types of the module `zeroset._core` |
+//! | `web` | the page of `zeroset view`, built into the next build of the command; needs Node.js 20.19 or later |
 //!
 //! The exit code is 0 if all went well, 1 if a step failed, and 2 for wrong usage.
 
 mod python;
+mod web;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
 const USAGE: &str = "\
 Usage: cargo xtask CHORE
 
 Chores:
+  browser  the tests of the page of `zeroset view`, in Chromium
   check    formatting, lints and documentation, all with warnings as errors
   man DIR  the manual pages of the command, written into a folder
   python   the Python package: built in place, its types checked, its tests run
-  stubs    writes the types of the module `zeroset._core`";
+  stubs    writes the types of the module `zeroset._core`
+  web      the page of `zeroset view`, for the next build of the command; needs Node.js 20.19 or later";
 
 /// One run of cargo.
 struct Step<'a> {
@@ -45,10 +50,12 @@ fn main() -> ExitCode {
     let arguments: Vec<_> = std::env::args_os().skip(1).collect();
     let words: Vec<_> = arguments.iter().map(|word| word.to_str()).collect();
     let outcome = match words[..] {
+        [Some("browser")] => web::test(),
         [Some("check")] => CHECK.iter().try_for_each(run),
         [Some("man"), Some(folder)] => man(folder),
         [Some("python")] => python::test(),
         [Some("stubs")] => python::types(python::Types::Write),
+        [Some("web")] => web::build(),
         [Some("help" | "-h" | "--help")] => {
             println!("{USAGE}");
             Ok(())
@@ -73,6 +80,12 @@ fn man(folder: &str) -> Result<(), String> {
     let folder = folder.to_str().ok_or("the name of the current folder is not UTF-8")?;
     let arguments = ["run", "--locked", "--quiet", "-p", "zeroset-cli", "--example", "man", "--", folder];
     run(&Step { arguments: &arguments, environment: &[] })
+}
+
+/// Where cargo puts what it builds: xtask itself is there.
+fn target() -> Result<PathBuf, String> {
+    let own = std::env::current_exe().map_err(|why| format!("xtask does not know where it is: {why}"))?;
+    Ok(own.parent().map(Path::to_path_buf).unwrap_or_default())
 }
 
 /// The root of the repository.

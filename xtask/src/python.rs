@@ -8,7 +8,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::{Step, root, run};
+use crate::{Step, root, run, target};
 
 /// What the tests need, by the names of the package index.
 const PACKAGES: [&str; 6] = ["numpy", "distributed", "fsspec", "pytest", "mypy", "numpydoc"];
@@ -53,12 +53,6 @@ pub(crate) fn types(what: Types) -> Result<(), String> {
     let kept = fs::read(&stub).unwrap_or_default();
     let same = kept == made.stdout;
     if same { Ok(()) } else { Err("python/zeroset/_core.pyi is out of date; run `cargo xtask stubs`".to_owned()) }
-}
-
-/// Where cargo puts what it builds: xtask itself is there.
-fn target() -> Result<PathBuf, String> {
-    let own = std::env::current_exe().map_err(|why| format!("xtask does not know where it is: {why}"))?;
-    Ok(own.parent().map(Path::to_path_buf).unwrap_or_default())
 }
 
 /// Makes a virtual environment that sees the package in place; returns its interpreter.

@@ -11,6 +11,7 @@ use zeroset::reconstruct::ReconstructError;
 use zeroset_io::{IoError, SolidError, shown};
 use zeroset_tiles::TilesError;
 use zeroset_view::render::RenderError;
+use zeroset_view::serve::ServeError;
 
 /// Why a command failed. The message names the file and the remedy.
 #[derive(Debug, thiserror::Error)]
@@ -117,6 +118,9 @@ pub(crate) enum CliError {
         /// Why.
         source: RenderError,
     },
+    /// The viewer cannot be started.
+    #[error(transparent)]
+    Serve(#[from] ServeError),
     /// Colours that tell of what is not there.
     #[error("{inputs}: there are {what}; choose another --color")]
     NothingToColor {

@@ -16,6 +16,7 @@ mod asprs;
 mod compare;
 mod completions;
 mod console;
+mod content;
 mod error;
 mod features;
 mod fit2d;
@@ -32,6 +33,7 @@ mod sample;
 mod simplify;
 mod table;
 mod threads;
+mod view;
 
 /// Compiles the examples of the README.
 #[cfg(doctest)]
@@ -103,6 +105,7 @@ fn run(command: Command) -> Result<(), CliError> {
         Command::Simplify(args) => simplify::run(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Render(args) => render::run(&args),
+        Command::View(args) => view::run(&args),
         Command::Info(args) => info::run(&args),
         Command::Completions(args) => completions::run(&args),
     }

@@ -1,12 +1,14 @@
-//! Pictures of clouds, meshes and features, without a display and without a graphics card.
+//! Pictures of clouds, meshes and features, without a display and without a graphics card, and a page that shows them.
 //!
 //! ```text
 //! scene (what is there) ── color (which colour stands for what) ── render (camera, drawing, light) ── a picture
+//!                                                               └─ serve (octree, bytes, server) ── the page in page/
 //! ```
 //!
 //! - [`scene`]: layers of points, surfaces and lines, each with its colours.
 //! - [`color`]: scales from values to colours, colours of classes and planes, legends.
 //! - [`render`]: a scene seen by a camera. Equal scenes give equal pictures bit for bit, on any number of threads.
+//! - [`serve`]: a server on this machine, and what it sends to the page.
 //!
 //! Nothing here knows of files: what is drawn comes as the core's clouds, meshes and features, and a picture is a grid of colours.
 //!
@@ -25,4 +27,5 @@
 pub mod color;
 pub mod render;
 pub mod scene;
+pub mod serve;
 mod vector;

@@ -9,6 +9,7 @@ mod shared;
 mod simplify;
 mod tiles;
 mod values;
+mod view;
 
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -26,6 +27,7 @@ pub use shared::{BriefRunArgs, InputArgs, RunArgs, SceneArgs, SceneChoice, Simpl
 pub use simplify::SimplifyArgs;
 pub use tiles::{TileArgs, TileFormatChoice};
 pub use values::{Backdrop, Bounds, Classes, Length, OrAuto, OrOff, Plane, Rectangle, Viewpoint};
+pub use view::ViewArgs;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -104,6 +106,8 @@ pub enum Command {
     Compare(CompareArgs),
     /// Draw clouds, meshes, models and features as a picture.
     Render(Box<RenderArgs>),
+    /// Show clouds, meshes, models and features in the browser.
+    View(ViewArgs),
     /// Show what a cloud, a mesh or a model holds.
     Info(InfoArgs),
     /// Print completions for a shell.

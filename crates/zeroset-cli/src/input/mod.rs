@@ -10,7 +10,7 @@ pub(crate) use names::{
     check_inputs, check_is_file, check_output_and_report, check_outputs, is_stream, refuse_mesh_stream, refuse_same,
     shown_output,
 };
-pub(crate) use scene::{SURVEYED, announced, scene, up, up_axis};
+pub(crate) use scene::{SURVEYED, announced, scene, up, up_axis, up_name};
 pub(crate) use select::filter;
 
 use std::time::Instant;

@@ -37,6 +37,18 @@ pub(crate) fn up_axis(choice: UpChoice) -> Up {
     }
 }
 
+/// The name of an axis, as it is typed.
+pub(crate) fn up_name(choice: UpChoice) -> &'static str {
+    match choice {
+        UpChoice::X => "x",
+        UpChoice::Y => "y",
+        UpChoice::Z => "z",
+        UpChoice::MinusX => "-x",
+        UpChoice::MinusY => "-y",
+        UpChoice::MinusZ => "-z",
+    }
+}
+
 /// The scene that was chosen, why, and how to choose another.
 pub(crate) fn announced(scene: Scene, reason: &str) -> String {
     format!("scene: {}, as {reason}; choose another with --scene object|terrain|airborne|free", name(scene))

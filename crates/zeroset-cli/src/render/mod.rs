@@ -1,6 +1,5 @@
 //! `zeroset render`.
 
-mod content;
 mod paint;
 
 use std::path::Path;
@@ -11,9 +10,9 @@ use zeroset_io::{PictureFormat, shown, write_picture};
 use zeroset_view::render::{Projection, RenderError, View, render};
 use zeroset_view::scene::{Layer, Scene, Shape};
 
-use self::content::{Content, is_possible};
 use crate::args::RenderArgs;
 use crate::console::Console;
+use crate::content::{Content, is_possible};
 use crate::error::{CliError, in_words};
 use crate::input::{check_is_file, check_output_and_report, is_stream, up_axis};
 use crate::progress::with_progress;

@@ -2,7 +2,6 @@
 
 use zeroset::cloud::Attributes;
 use zeroset::feature::Features;
-use zeroset::model::{ModelError, evaluate};
 use zeroset::monitor::Monitor;
 use zeroset_view::color::{
     ColorMap, Ends, Legend, NO_VALUE, PLAIN_POINTS, PLAIN_SURFACE, Scale, class_color, plane_color,
@@ -11,9 +10,9 @@ use zeroset_view::scene::{
     Layer, Paint, Reference, Scene, curvatures, distances, heights, plane_of_points, variations,
 };
 
-use super::content::{Content, Item, reference};
 use crate::args::{ColorChoice, ColorMapChoice, RenderArgs};
 use crate::asprs::class_name;
+use crate::content::{Content, Item, off_model, reference};
 use crate::error::{CliError, in_words};
 use crate::input::up_axis;
 
@@ -82,22 +81,6 @@ fn choice(content: &Content, args: &RenderArgs) -> Result<ColorChoice, CliError>
     } else {
         ColorChoice::Height
     })
-}
-
-impl Item {
-    fn attributes(&self) -> &Attributes {
-        match self {
-            Self::Cloud(cloud) => &cloud.attributes,
-            Self::Mesh(mesh) => &mesh.attributes,
-        }
-    }
-
-    fn positions(&self) -> (&[[f64; 3]], [f64; 3]) {
-        match self {
-            Self::Cloud(cloud) => (&cloud.points, cloud.world_from_local),
-            Self::Mesh(mesh) => (&mesh.vertices, mesh.world_from_local),
-        }
-    }
 }
 
 fn plain(item: &Item) -> Paint {
@@ -200,20 +183,9 @@ fn residuals(content: &Content, args: &RenderArgs, monitor: &dyn Monitor) -> Res
     if !content.items.iter().any(|item| matches!(item, Item::Cloud(_))) {
         return Err(missing("no points whose residuals could be shown", args));
     }
-    let of = |item: &Item| -> Result<Option<Vec<Option<f64>>>, CliError> {
-        let Item::Cloud(cloud) = item else { return Ok(None) };
-        let world: Vec<[f64; 3]> = (0..cloud.len()).map(|i| cloud.world(i)).collect();
-        let failed = |source| match source {
-            ModelError::Cancelled(_) => CliError::Interrupted,
-            source => CliError::Model { what: name.clone(), source },
-        };
-        let found = evaluate(solid, &world, monitor).map_err(failed)?;
-        // F over its slope is the distance, near the surface.
-        let off = |(value, gradient): (&f64, &[f64; 3])| {
-            let slope = gradient.iter().map(|c| c * c).sum::<f64>().sqrt();
-            (slope > 0.0).then(|| value / slope)
-        };
-        Ok(Some(found.values.iter().zip(&found.gradients).map(off).collect()))
+    let of = |item: &Item| match item {
+        Item::Cloud(cloud) => off_model(cloud, name, solid, monitor).map(Some),
+        Item::Mesh(_) => Ok(None),
     };
     content.items.iter().map(of).collect()
 }

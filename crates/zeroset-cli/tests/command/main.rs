@@ -15,3 +15,4 @@ mod render;
 mod simplify;
 mod tiles;
 mod usage;
+mod view;

@@ -10,7 +10,7 @@ fn help_tells_what_there_is() {
     let folder = folder();
     let help = line(folder.path(), "--help").ok().stdout;
     for command in
-        ["reconstruct", "features", "fit2d", "sample", "simplify", "compare", "render", "info", "completions"]
+        ["reconstruct", "features", "fit2d", "sample", "simplify", "compare", "render", "view", "info", "completions"]
     {
         assert!(help.contains(command), "{command}");
         let own = line(folder.path(), &format!("{command} --help")).ok().stdout;
@@ -126,7 +126,7 @@ fn manual_pages_tell_every_option() {
     let folder = folder();
     clap_mangen::generate_to(zeroset_cli::args::Args::command(), folder.path()).unwrap();
     let commands =
-        ["reconstruct", "features", "fit2d", "sample", "simplify", "compare", "render", "info", "completions"];
+        ["reconstruct", "features", "fit2d", "sample", "simplify", "compare", "render", "view", "info", "completions"];
     for command in commands {
         let page = std::fs::read_to_string(folder.path().join(format!("zeroset-{command}.1"))).unwrap();
         assert!(page.contains(".SH SYNOPSIS"), "{page}");

@@ -1,11 +1,11 @@
-//! What the files hold.
+//! What files of any kind hold, to be shown.
 
 use std::path::{Path, PathBuf};
 
-use zeroset::cloud::Cloud;
+use zeroset::cloud::{Attributes, Cloud};
 use zeroset::feature::Features;
 use zeroset::mesh::Mesh;
-use zeroset::model::{MeshParams, Solid, mesh};
+use zeroset::model::{MeshParams, ModelError, Solid, evaluate, mesh};
 use zeroset::monitor::Monitor;
 use zeroset_io::solid::{MODEL_SUFFIX, TREE_SUFFIX};
 use zeroset_io::{FeatureFormat, LinearUnit, read_features, shown};
@@ -16,24 +16,42 @@ use crate::model::open;
 
 /// What all files hold.
 #[derive(Debug, Default)]
-pub(super) struct Content {
+pub(crate) struct Content {
     /// Clouds, and meshes with those of models, in the order of the files.
-    pub(super) items: Vec<Item>,
+    pub(crate) items: Vec<Item>,
     /// Models.
-    pub(super) solids: Vec<(String, Solid)>,
+    pub(crate) solids: Vec<(String, Solid)>,
     /// Features.
-    pub(super) features: Vec<Features>,
+    pub(crate) features: Vec<Features>,
     /// The unit that the first file states.
-    pub(super) unit: Option<LinearUnit>,
+    pub(crate) unit: Option<LinearUnit>,
 }
 
 /// Points or triangles.
 #[derive(Debug)]
-pub(super) enum Item {
+pub(crate) enum Item {
     /// Points.
     Cloud(Cloud),
     /// Triangles.
     Mesh(Mesh),
+}
+
+impl Item {
+    /// What was measured beside the positions.
+    pub(crate) fn attributes(&self) -> &Attributes {
+        match self {
+            Self::Cloud(cloud) => &cloud.attributes,
+            Self::Mesh(mesh) => &mesh.attributes,
+        }
+    }
+
+    /// Local positions, and the offset to world coordinates.
+    pub(crate) fn positions(&self) -> (&[[f64; 3]], [f64; 3]) {
+        match self {
+            Self::Cloud(cloud) => (&cloud.points, cloud.world_from_local),
+            Self::Mesh(mesh) => (&mesh.vertices, mesh.world_from_local),
+        }
+    }
 }
 
 /// What else there is beside clouds and meshes.
@@ -51,8 +69,13 @@ fn is_features(path: &Path) -> bool {
     matches!(FeatureFormat::from_path(path), Ok(FeatureFormat::Json)) && has_suffix(path, "json")
 }
 
+/// Whether a file holds points or triangles, rather than what they can be coloured by.
+pub(crate) fn is_input(path: &Path) -> bool {
+    !is_solid(path) && !is_features(path)
+}
+
 /// Refuses files of unknown kinds.
-pub(super) fn is_possible(path: &Path) -> Result<(), CliError> {
+pub(crate) fn is_possible(path: &Path) -> Result<(), CliError> {
     if !is_solid(path) && !is_features(path) {
         cloud_or_mesh(path, "cloud, mesh, model or feature", FURTHER)?;
     }
@@ -60,7 +83,7 @@ pub(super) fn is_possible(path: &Path) -> Result<(), CliError> {
 }
 
 impl Content {
-    pub(super) fn read(files: &[PathBuf], monitor: &dyn Monitor) -> Result<Self, CliError> {
+    pub(crate) fn read(files: &[PathBuf], monitor: &dyn Monitor) -> Result<Self, CliError> {
         let mut content = Self::default();
         for path in files {
             monitor.stage(&format!("reading {}", shown(path)));
@@ -81,7 +104,7 @@ impl Content {
 }
 
 /// Something to measure distances to.
-pub(super) fn reference(path: &Path, monitor: &dyn Monitor) -> Result<Item, CliError> {
+pub(crate) fn reference(path: &Path, monitor: &dyn Monitor) -> Result<Item, CliError> {
     monitor.stage(&format!("reading {}", shown(path)));
     if is_features(path) {
         return Err(CliError::Usage(format!(
@@ -106,4 +129,24 @@ fn item_of(path: &Path) -> Result<(Item, Option<LinearUnit>), CliError> {
 fn surface_of(solid: &Solid, path: &Path, monitor: &dyn Monitor) -> Result<Mesh, CliError> {
     let made = mesh(solid, &MeshParams::default(), monitor);
     Ok(made.map_err(|source| CliError::Model { what: shown(path), source })?.0)
+}
+
+/// How far points lie off a model, with the sign of F: its value over its slope, which is the distance near the surface. `name` is the model's in messages.
+pub(crate) fn off_model(
+    cloud: &Cloud,
+    name: &str,
+    solid: &Solid,
+    monitor: &dyn Monitor,
+) -> Result<Vec<Option<f64>>, CliError> {
+    let world: Vec<[f64; 3]> = (0..cloud.len()).map(|i| cloud.world(i)).collect();
+    let failed = |source| match source {
+        ModelError::Cancelled(_) => CliError::Interrupted,
+        source => CliError::Model { what: name.to_owned(), source },
+    };
+    let found = evaluate(solid, &world, monitor).map_err(failed)?;
+    let off = |(value, gradient): (&f64, &[f64; 3])| {
+        let slope = gradient.iter().map(|c| c * c).sum::<f64>().sqrt();
+        (slope > 0.0).then(|| value / slope)
+    };
+    Ok(found.values.iter().zip(&found.gradients).map(off).collect())
 }
