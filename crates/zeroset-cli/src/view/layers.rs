@@ -31,7 +31,9 @@ pub(super) struct Files {
 /// What was read before.
 #[derive(Default)]
 struct Known {
-    features: Option<Features>,
+    /// The last ones, and the number of their first plane: planes are numbered through all files.
+    features: Option<(u32, Features)>,
+    planes: u32,
     solid: Option<(String, Solid)>,
     reference: Option<Reference>,
 }
@@ -67,8 +69,10 @@ impl Files {
             layers.push(of_item(item, &name, channels, unit));
         }
         for features in features {
-            layers.extend(of_features(&features, &name));
-            known.features = Some(features);
+            let first = known.planes;
+            layers.extend(of_features(&features, &name, first));
+            known.planes += features.planes.len() as u32;
+            known.features = Some((first, features));
         }
         Ok(layers)
     }
@@ -97,9 +101,9 @@ impl Files {
             let values: Vec<_> = intensities.iter().map(|v| Some(f64::from(*v))).collect();
             channels.push(Channel::values("intensity", "intensity".into(), &values, Ends::Both));
         }
-        if let Some(features) = &known.features {
+        if let Some((first, features)) = &known.features {
             let planes = plane_of_points(positions, offset, features);
-            let data = Data::Planes(planes.into_iter().map(|plane| plane.map(|i| i as u32)).collect());
+            let data = Data::Planes(planes.into_iter().map(|plane| plane.map(|i| first + i as u32)).collect());
             channels.push(Channel { name: "plane", title: "plane".into(), data });
         }
         match (item, &known.solid) {
@@ -174,8 +178,8 @@ fn of_layer(layer: Layer, name: String, kind: Kind) -> ViewLayer {
     }
 }
 
-/// Corners, edges and planes.
-fn of_features(features: &Features, name: &str) -> Vec<ViewLayer> {
+/// Corners, edges and planes, which are numbered from `first` on.
+fn of_features(features: &Features, name: &str, first: u32) -> Vec<ViewLayer> {
     let mut layers: Vec<ViewLayer> = Layer::edges_and_corners(features)
         .into_iter()
         .map(|layer| {
@@ -185,18 +189,18 @@ fn of_features(features: &Features, name: &str) -> Vec<ViewLayer> {
         })
         .collect();
     if let Some(layer) = Layer::planes(features) {
-        let numbers = features.planes.iter().enumerate();
-        let of_vertices = numbers.flat_map(|(i, plane)| plane.rings.iter().flatten().map(move |_| Some(i as u32)));
+        let numbers = (first..).zip(&features.planes);
+        let of_vertices = numbers.flat_map(|(i, plane)| plane.rings.iter().flatten().map(move |_| Some(i)));
         let data = Data::Planes(of_vertices.collect());
         let channel = Channel { name: "plane", title: "plane".into(), data };
-        let planes = (0..features.planes.len()).map(|i| view_plane(features, i)).collect();
+        let planes = (0..features.planes.len()).map(|i| view_plane(features, i, first as usize + i)).collect();
         let plain = of_layer(layer, format!("{name}: planes"), Kind::Planes);
         layers.push(ViewLayer { channels: vec![channel], shown: Some("plane"), planes, ..plain });
     }
     layers
 }
 
-fn view_plane(features: &Features, i: usize) -> ViewPlane {
+fn view_plane(features: &Features, i: usize, number: usize) -> ViewPlane {
     let plane = &features.planes[i];
     ViewPlane {
         normal: plane.normal,
@@ -204,6 +208,6 @@ fn view_plane(features: &Features, i: usize) -> ViewPlane {
         area: plane.area,
         rms: plane.rms,
         points: plane.points,
-        color: plane_color(i),
+        color: plane_color(number),
     }
 }

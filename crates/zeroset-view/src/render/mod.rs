@@ -5,7 +5,7 @@
 //! is shown by darkening what lies behind its surroundings on the picture (eye-dome lighting), so clouds need no normals.
 //!
 //! # How
-//! 1. All positions are placed on the picture ([`camera`]), in the homogeneous coordinates of Olano and Greer: triangles need no clipping.
+//! 1. All positions are placed on the picture (`camera.rs`), in the homogeneous coordinates of Olano and Greer: triangles need no clipping.
 //! 2. The picture, in so many samples a pixel, is cut into squares. Each gets a list of what may show in it, in order.
 //! 3. Squares are drawn on all threads: each sample keeps the nearest thing, and of equally near ones the first.
 //! 4. What is seen gets its colour and its light, once a sample; samples become pixels.

@@ -4,7 +4,7 @@
 
 use serde::Serialize;
 
-use super::channel::{Channel, Data, Kind, ViewPlane};
+use super::channel::{Channel, Data, Kind, ViewLayer, ViewPlane};
 use super::state::{Served, State};
 use crate::color::{Rgb, class_color};
 use crate::scene::Shape;
@@ -21,8 +21,15 @@ pub(super) struct SceneText {
     up: &'static str,
     unit: Option<&'static str>,
     crs: Option<String>,
-    layers: Vec<LayerText>,
+    layers: Vec<NumberedLayer>,
     planes: Vec<ViewPlane>,
+}
+
+#[derive(Debug, Serialize)]
+struct NumberedLayer {
+    id: usize,
+    #[serde(flatten)]
+    text: LayerText,
 }
 
 #[derive(Debug, Serialize)]
@@ -31,9 +38,9 @@ struct WorkText {
     share: f64,
 }
 
-#[derive(Debug, Serialize)]
-struct LayerText {
-    id: usize,
+/// A layer, put together once: the page asks often while something is loaded.
+#[derive(Debug, Clone, Serialize)]
+pub(super) struct LayerText {
     name: String,
     kind: &'static str,
     count: usize,
@@ -45,7 +52,7 @@ struct LayerText {
     color: Option<&'static str>,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Clone, Serialize)]
 struct ChannelText {
     name: &'static str,
     title: String,
@@ -53,7 +60,7 @@ struct ChannelText {
     data: DataText,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Clone, Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 enum DataText {
     Value {
@@ -73,7 +80,7 @@ enum DataText {
     Plane,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Clone, Serialize)]
 struct ClassText {
     value: u8,
     name: &'static str,
@@ -110,13 +117,18 @@ pub(super) fn scene(state: &State, up: &'static str) -> SceneText {
         up,
         unit: state.layers.iter().find_map(|served| served.layer.system.1),
         crs: first(|served| served.layer.system.0.clone()),
-        layers: state.layers.iter().enumerate().map(|(id, served)| layer(id, served)).collect(),
+        layers: state
+            .layers
+            .iter()
+            .enumerate()
+            .map(|(id, served)| NumberedLayer { id, text: served.text.clone() })
+            .collect(),
         planes: state.layers.iter().flat_map(|served| served.layer.planes.iter().cloned()).collect(),
     }
 }
 
-fn layer(id: usize, served: &Served) -> LayerText {
-    let own = &served.layer;
+/// A layer whose positions come to lie a step aside.
+pub(super) fn layer(own: &ViewLayer, step: [f64; 3]) -> LayerText {
     let finite = own.positions.iter().filter(|p| p.iter().all(|c| c.is_finite()));
     let mut bounds: Option<[[f64; 3]; 2]> = None;
     for p in finite {
@@ -126,7 +138,6 @@ fn layer(id: usize, served: &Served) -> LayerText {
         }
     }
     LayerText {
-        id,
         name: own.name.clone(),
         kind: match own.kind {
             Kind::Points => "points",
@@ -135,7 +146,7 @@ fn layer(id: usize, served: &Served) -> LayerText {
             Kind::Planes => "planes",
         },
         count: own.shape.count(own.positions.len()),
-        bounds: bounds.map(|corners| corners.map(|p| vector::add(p, served.step))),
+        bounds: bounds.map(|corners| corners.map(|p| vector::add(p, step))),
         plain: own.plain,
         lifted: own.lifted,
         diameter: match own.shape {

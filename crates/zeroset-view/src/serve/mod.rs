@@ -9,10 +9,10 @@
 //!
 //! | path | what |
 //! |---|---|
-//! | `scene.json` | the layers with their channels, what is being loaded, what went wrong: [`describe`] |
-//! | `layers/ID/nodes.json` | the octree of a layer of points: [`octree`] |
-//! | `layers/ID/nodes/N.bin` | the points of a node: [`encode`] |
-//! | `layers/ID/mesh.bin` | the triangles or lines of a layer: [`encode`] |
+//! | `scene.json` | the layers with their channels, what is being loaded, what went wrong: `describe.rs` |
+//! | `layers/ID/nodes.json` | the octree of a layer of points: `octree.rs` |
+//! | `layers/ID/nodes/N.bin` | the points of a node: `encode.rs` |
+//! | `layers/ID/mesh.bin` | the triangles or lines of a layer: `encode.rs` |
 //! | POST `files?name=NAME` | one more file, as the body |
 //!
 //! # Who may ask

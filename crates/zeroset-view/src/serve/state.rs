@@ -7,6 +7,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use zeroset::monitor::Monitor;
 
 use super::channel::{Kind, ViewLayer};
+use super::describe::{self, LayerText};
 use super::octree::{Node, octree};
 use super::{Loader, encode};
 use crate::scene::Shape;
@@ -49,6 +50,7 @@ pub(super) struct Served {
     pub(super) layer: ViewLayer,
     /// From its positions to those of the page.
     pub(super) step: [f64; 3],
+    pub(super) text: LayerText,
     /// The octree of points; empty for all else.
     pub(super) nodes: Vec<Node>,
 }
@@ -57,7 +59,8 @@ impl Served {
     fn new(layer: ViewLayer, origin: [f64; 3]) -> Self {
         let step = vector::sub(layer.world_from_local, origin);
         let nodes = if layer.kind == Kind::Points { octree(&layer.positions) } else { Vec::new() };
-        Self { layer, step, nodes }
+        let text = describe::layer(&layer, step);
+        Self { layer, step, text, nodes }
     }
 
     /// The points of a node.
