@@ -302,3 +302,66 @@ fn a_file_from_the_page_is_added_and_a_bad_one_is_told() {
     assert!(scene["revision"].as_u64().unwrap() > told["revision"].as_u64().unwrap());
     assert_eq!(scene["layers"].as_array().unwrap().len(), 1);
 }
+
+/// Sends requests that were sound before some of their bytes were changed, cut out or doubled, for so long.
+fn fuzz(time: Duration) {
+    let server = Running::start();
+    server.shared.load(Path::new("torus.xyz"), None);
+    let (token, port) = (server.shared.token.clone(), server.shared.port);
+    let mut state = 0x2545_f491_4f6c_dd1d_u64;
+    let mut random = move |below: usize| {
+        // Xorshift, Marsaglia 2003.
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state >> 11) as usize % below
+    };
+    let paths = ["", "scene.json", "layers/0/nodes.json", "layers/0/nodes/0.bin", "layers/0/mesh.bin", "page.js"];
+    let start = Instant::now();
+    let mut sent = 0;
+    while start.elapsed() < time {
+        let path = paths[random(paths.len())];
+        let mut request = match random(4) {
+            0 => format!(
+                "POST /{token}/files?name=bad.xyz HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nContent-Length: 6\r\n\
+                 Connection: close\r\n\r\n1 2 3\n"
+            ),
+            _ => format!("GET /{token}/{path} HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nConnection: close\r\n\r\n"),
+        }
+        .into_bytes();
+        for _ in 0..1 + random(4) {
+            let at = random(request.len());
+            match random(3) {
+                0 => request[at] = random(256) as u8,
+                1 => drop(request.drain(at..request.len().min(at + 1 + random(9)))),
+                _ => request.extend_from_within(at..),
+            }
+            if request.is_empty() {
+                request.push(b'\n');
+            }
+        }
+        let mut stream = TcpStream::connect((Ipv4Addr::LOCALHOST, port)).unwrap();
+        stream.set_read_timeout(Some(Duration::from_millis(200))).unwrap();
+        // The server may hang up before it has read all, and waits for what was cut off.
+        let _ = stream.write_all(&request);
+        let _ = stream.shutdown(std::net::Shutdown::Write);
+        let mut answer = Vec::new();
+        let _ = stream.read_to_end(&mut answer);
+        assert!(answer.is_empty() || answer.starts_with(b"HTTP/1."), "{}", String::from_utf8_lossy(&request));
+        sent += 1;
+    }
+    let scene = server.settled();
+    assert_eq!(scene["layers"][0]["count"], POINTS, "after {sent} requests");
+    assert!(sent > 10);
+}
+
+#[test]
+fn requests_with_changed_bytes_do_not_stop_the_server() {
+    fuzz(Duration::from_secs(2));
+}
+
+#[test]
+#[ignore = "takes a minute"]
+fn requests_with_changed_bytes_do_not_stop_the_server_for_a_minute() {
+    fuzz(Duration::from_secs(60));
+}
